@@ -1,0 +1,38 @@
+//! # packlight
+//!
+//! A renderer that traces light in packets of eight rays.
+//!
+//! ```text
+//!  .xml .obj .ply ──load──▶ SceneDescription ──compile──▶ Scene (columns + BVH)
+//!                                                            │
+//!   ┌──────────────────── render, tile by tile ──────────────┘
+//!   ▼
+//!  camera ─▶ ray packets ─▶ trace ─▶ hits ─▶ sort by material ─▶ runs ─▶ shade (8 at a time) ─▶ radiance ─▶ film ─▶ picture
+//!                ▲                                                 │
+//!                └──────────── next rays, shadow rays ─────────────┘
+//! ```
+//!
+//! Modules stand in the order of the floors they are on; a module imports only from floors below its
+//! own (`tests/architecture.rs` proves it).
+
+// floor 0
+pub mod math;
+pub mod simd;
+// floor 1
+pub mod geometry;
+pub mod picture;
+// floor 2
+pub mod bvh;
+pub mod film;
+pub mod light;
+pub mod material;
+pub mod texture;
+// floor 3
+pub mod scene;
+// floor 4
+pub mod compile;
+pub mod load;
+// floor 5
+pub mod render;
+// roof
+pub mod cli;

@@ -1,0 +1,3 @@
+//! The program: CPU guard, then the command line.
+
+fn main() {}

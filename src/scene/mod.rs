@@ -1,0 +1,41 @@
+//! What a scene file says: plain public data, no behaviour beyond defaults.
+//!
+//! `load/` fills a [`SceneDescription`], `compile/` turns it into columns and a tree. Units are SI,
+//! radiometric quantities are linear sRGB triples, angles are radians, world space is right-handed.
+//! Everything in here has passed the door: numbers are finite, indices are in range, files were read.
+
+mod emitter;
+mod integrator;
+mod material;
+mod sensor;
+mod shape;
+mod texture;
+
+pub use emitter::Emitter;
+pub use integrator::{Aov, AovChannel, Integrator};
+pub use material::Material;
+pub use sensor::{Film, Projection, Sampler, Sensor};
+pub use shape::{Geometry, Mesh, Shape};
+pub use texture::{Filter, Texture, Wrap};
+
+/// A linear sRGB triple: reflectance, radiance, or any other spectral quantity in three bands.
+pub type Rgb = glam::Vec3;
+
+/// Place of a [`Material`] in [`SceneDescription::materials`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct MaterialIndex(pub u32);
+
+/// A whole scene as its file describes it, with every mesh and image read.
+#[derive(Clone, Debug, Default)]
+pub struct SceneDescription {
+    /// How light is transported.
+    pub integrator: Integrator,
+    /// The camera, its film and its sampler.
+    pub sensor: Sensor,
+    /// Everything that can be hit, in file order: the order decides ties (lowest primitive id).
+    pub shapes: Vec<Shape>,
+    /// The reflection models that shapes refer to.
+    pub materials: Vec<Material>,
+    /// Lights that are not shapes.
+    pub emitters: Vec<Emitter>,
+}

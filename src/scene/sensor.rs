@@ -1,0 +1,76 @@
+//! Camera, film and sampler.
+
+use glam::DAffine3;
+
+/// A camera and what belongs to it. Camera space looks along +Z, +Y is up and **+X points to the
+/// left** of the picture, as in Mitsuba.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensor {
+    /// Camera to world.
+    pub to_world: DAffine3,
+    /// How directions become pixels.
+    pub projection: Projection,
+    /// Rays start at this distance along the axis; nearer geometry is invisible.
+    pub near_clip: f64,
+    /// Rays end at this distance along the axis.
+    pub far_clip: f64,
+    /// The picture.
+    pub film: Film,
+    /// Samples per pixel.
+    pub sampler: Sampler,
+}
+
+impl Default for Sensor {
+    fn default() -> Self {
+        Self {
+            to_world: DAffine3::IDENTITY,
+            projection: Projection::Perspective { x_fov: 0.738_448_6 },
+            near_clip: 0.01,
+            far_clip: 10_000.0,
+            film: Film::default(),
+            sampler: Sampler::default(),
+        }
+    }
+}
+
+/// The projection of a [`Sensor`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// Pinhole.
+    Perspective {
+        /// Angle that the film's **width** spans, radians, in (0, π). Loaders convert other axes.
+        x_fov: f64,
+    },
+    /// Parallel rays; the film's width spans camera x in [-1, 1].
+    Orthographic,
+}
+
+/// Size of the picture in pixels. The filter is a box: a pixel is the mean of its own samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Film {
+    /// Columns, at least 1.
+    pub width: u32,
+    /// Rows, at least 1; row 0 is the top.
+    pub height: u32,
+}
+
+impl Default for Film {
+    fn default() -> Self {
+        Self { width: 768, height: 576 }
+    }
+}
+
+/// Where sample positions come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sampler {
+    /// Samples per pixel, at least 1.
+    pub sample_count: u32,
+    /// Changes every random decision of the render.
+    pub seed: u32,
+}
+
+impl Default for Sampler {
+    fn default() -> Self {
+        Self { sample_count: 4, seed: 0 }
+    }
+}

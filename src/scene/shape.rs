@@ -1,0 +1,74 @@
+//! Things that can be hit.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3, Vec2, Vec3};
+
+use super::{MaterialIndex, Rgb};
+
+/// A surface in the world.
+#[derive(Clone, Debug)]
+pub struct Shape {
+    /// For messages: the `id` of the element, or the name of the file or group.
+    pub name: String,
+    /// In local space.
+    pub geometry: Geometry,
+    /// Local to world.
+    pub to_world: DAffine3,
+    /// Turns the normals round, and with them the side that is shaded and the side that emits.
+    pub flip_normals: bool,
+    /// How it reflects.
+    pub material: MaterialIndex,
+    /// Radiance emitted on the side of the normal, the same in all directions, W/(m² sr).
+    pub radiance: Option<Rgb>,
+}
+
+/// Local-space geometry, its normal and its texture coordinates.
+#[derive(Clone, Debug)]
+pub enum Geometry {
+    /// Outward normal; axis z: u = atan2(y, x)/2π in [0, 1), v = acos(z)/π. `to_world` must be a
+    /// similarity (no non-uniform scale).
+    Sphere {
+        /// Local space.
+        center: DVec3,
+        /// Local space, positive.
+        radius: f64,
+    },
+    /// [-1, 1]² in the xy plane, normal +z, uv = ((x+1)/2, (y+1)/2).
+    Rectangle,
+    /// Unit disc in the xy plane, normal +z, u = radius, v = angle/2π.
+    Disk,
+    /// No caps, normal outward; u = angle/2π, v runs along the axis from `p0`.
+    Cylinder {
+        /// Local space.
+        p0: DVec3,
+        /// Local space, not `p0`.
+        p1: DVec3,
+        /// Local space, positive.
+        radius: f64,
+    },
+    /// [-1, 1]³, flat outward normals, each face [0, 1]² in uv.
+    Cube,
+    /// Triangles.
+    Mesh {
+        /// Shared by all shapes that place the same file.
+        mesh: Arc<Mesh>,
+        /// Geometric normals are shaded, whatever normals the mesh has.
+        face_normals: bool,
+    },
+}
+
+/// Indexed triangles in local space. Every index is in range; every coordinate is finite.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Vertex positions.
+    pub positions: Vec<Vec3>,
+    /// Vertex normals, one a position, not necessarily of unit length; empty if the file has none:
+    /// then smooth normals are computed, weighted by the corner's angle.
+    pub normals: Vec<Vec3>,
+    /// Texture coordinates, one a position; empty if the file has none: then the barycentric
+    /// coordinates (b1, b2) of each triangle stand in.
+    pub uvs: Vec<Vec2>,
+    /// Corners, counter-clockwise from the side of the normal.
+    pub triangles: Vec<[u32; 3]>,
+}
