@@ -16,23 +16,25 @@
 //! own (`tests/architecture.rs` proves it).
 
 // floor 0
-pub mod math;
 pub mod simd;
 // floor 1
+pub mod math;
+// floor 2
 pub mod geometry;
 pub mod picture;
-// floor 2
+pub mod texture;
+// floor 3
 pub mod bvh;
+pub mod camera;
 pub mod film;
 pub mod light;
 pub mod material;
-pub mod texture;
-// floor 3
-pub mod scene;
 // floor 4
+pub mod scene;
+// floor 5
 pub mod compile;
 pub mod load;
-// floor 5
+// floor 6
 pub mod render;
 // roof
 pub mod cli;

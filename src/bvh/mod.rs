@@ -1,1 +1,130 @@
-//! (skeleton)
+//! A tree of boxes, eight to a node.
+//!
+//! The tree never names a shape. It is built from boxes that carry a *class*, it puts primitives of one
+//! class into *slots*, eight to a block, and it hands ranges of slots to whoever knows what is in them
+//! ([`Leaves`]).
+//!
+//! Build: binned SAH \[Wal07\] to a binary tree, collapsed to eight children by dynamic programming
+//! \[YKL17\]. Traversal: a packet of eight rays or a single one, closest hit and occlusion from one body.
+
+mod beam;
+mod build;
+mod collapse;
+mod node;
+mod packet;
+mod single;
+mod stream;
+mod tile;
+mod validate;
+mod wave;
+
+pub use build::{MAX_LEAF, Reference};
+pub use node::{Child, Kind, Node};
+pub use stream::{Stream, Tracer, Way};
+pub use validate::{Defect, Shape};
+use wave::Wave;
+
+use glam::Vec3;
+
+use crate::geometry::{Hit, Ray, Rayx8};
+use crate::simd::{Mask8, f32x8, u32x8};
+
+/// Slots in a block. A leaf never crosses from one block into the next.
+pub const BLOCK: usize = 8;
+
+/// A tree over boxes.
+#[derive(Debug, Default)]
+pub struct Bvh {
+    nodes: Vec<Node>,
+    slots: Vec<u32>,
+    /// Greatest absolute coordinate along each axis.
+    reach: Vec3,
+}
+
+/// Hits of a packet. `t` starts as the rays' `t_far`, `primitive` as [`PrimitiveId::NONE`]'s number.
+///
+/// [`PrimitiveId::NONE`]: crate::geometry::PrimitiveId::NONE
+#[derive(Clone, Copy, Debug)]
+pub struct Hitx8 {
+    /// Distances; for an occlusion query −∞ where something was found.
+    pub t: f32x8,
+    /// Barycentric weights of the second vertices.
+    pub u: f32x8,
+    /// Barycentric weights of the third vertices.
+    pub v: f32x8,
+    /// Primitive numbers.
+    pub primitive: u32x8,
+}
+
+/// What is in the slots: the tree asks it to intersect a leaf's range.
+pub trait Leaves {
+    /// Eight rays against `count` slots from `first` on: hits that are closer than those in `hit` (or
+    /// equal with a lower id) replace them. For `ANY`, one hit within (t_near, `hit.t`] is enough, and
+    /// its lanes get t = −∞.
+    fn intersect_packet<const ANY: bool>(
+        &self,
+        first: u32,
+        count: u32,
+        ray: &Rayx8,
+        active: Mask8,
+        hit: &mut Hitx8,
+    );
+
+    /// One ray against `count` slots at once: the lanes are primitives.
+    fn intersect_block<const ANY: bool>(&self, first: u32, count: u32, ray: &Ray, hit: &mut Hit);
+
+    /// One ray, from the scalar kernels.
+    fn intersect_single<const ANY: bool>(&self, first: u32, count: u32, ray: &Ray, hit: &mut Hit);
+}
+
+/// Counts what a traversal does; `()` counts nothing and costs nothing.
+pub trait Tally {
+    /// A node's children were tested by this many rays.
+    fn node(&mut self, rays: u32);
+    /// A leaf of this many primitives was tested by this many rays.
+    fn leaf(&mut self, primitives: u32, rays: u32);
+}
+
+impl Tally for () {
+    #[inline]
+    fn node(&mut self, _: u32) {}
+    #[inline]
+    fn leaf(&mut self, _: u32, _: u32) {}
+}
+
+/// Deeper than any tree: splits are limited in depth (see `build`), and seven siblings wait at each
+/// level.
+const STACK: usize = 640;
+
+/// What a traversal needs beside the tree, kept from ray to ray so that it is set up once.
+#[derive(Debug)]
+pub struct Traversal<T = ()> {
+    stack: Box<[(Child, f32); STACK]>,
+    /// What has been counted.
+    pub tally: T,
+}
+
+impl<T> Traversal<T> {
+    /// An empty stack.
+    pub fn new(tally: T) -> Self {
+        Self { stack: Box::new([(Child::ABSENT, 0.0); STACK]), tally }
+    }
+}
+
+impl Bvh {
+    /// The nodes; the root is the first. Empty if there is nothing to hit.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// Greatest absolute coordinate of any box, along each axis.
+    fn reach(&self) -> Vec3 {
+        self.reach
+    }
+
+    /// For each slot the number of the reference in it, [`u32::MAX`] where it is padding. A whole number
+    /// of blocks; blocks of one class stand together, classes in ascending order.
+    pub fn slots(&self) -> &[u32] {
+        &self.slots
+    }
+}

@@ -1,15 +1,47 @@
 //! A description to columns in leaf order, ids and a tree.
 
-use std::time::Duration;
+mod canonical;
+mod lights;
+mod materials;
+mod mesh;
+mod primitives;
+mod queries;
+mod shapes;
+mod streams;
+mod surfaces;
 
-use crate::scene::SceneDescription;
+use std::time::{Duration, Instant};
+
+pub use primitives::Primitives;
+pub use surfaces::Surface;
+
+use crate::bvh::{Bvh, Child, Reference};
+use crate::camera::Camera;
+use crate::light::{Light, LightId};
+use crate::material::MaterialTable;
+use crate::scene::{Film, Integrator, Projection, Sampler, SceneDescription, Sensor};
+use crate::texture::TextureTable;
+use surfaces::Surfaces;
 
 /// A scene ready to be traced.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Scene {
+    pub(crate) primitives: Primitives,
+    pub(crate) bvh: Bvh,
+    surfaces: Surfaces,
+    pub(crate) materials: MaterialTable,
+    pub(crate) textures: TextureTable,
+    pub(crate) lights: Vec<Light>,
+    /// Lights that rays which leave the scene see.
+    pub(crate) environments: Vec<LightId>,
+    pub(crate) camera: Camera,
+    /// Size of the picture.
+    pub film: Film,
+    /// Samples per pixel and seed.
+    pub sampler: Sampler,
+    /// What is estimated.
+    pub integrator: Integrator,
     summary: Summary,
-    /// (skeleton)
-    pub film: crate::scene::Film,
 }
 
 /// What was compiled, for people.
@@ -44,15 +76,74 @@ impl Scene {
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum CompileError {
     /// More primitives than a tree can name.
-    #[error("the scene has {0} primitives, more than the {max} that a tree can hold; split it", max = 1u64 << 28)]
+    #[error("the scene has {0} primitives, more than the {max} that a tree can hold; split it", max = MAX_PRIMITIVES)]
     TooManyPrimitives(u64),
+    /// A coordinate that does not fit 32 bits once it is in the world.
+    #[error("shape `{shape}` reaches beyond what 32-bit floats can hold; scale the scene down")]
+    OutOfRange {
+        /// Name of the shape.
+        shape: String,
+    },
 }
 
-/// Builds columns, lights, materials and the tree.
+/// Padding of blocks takes some of the slots that a child's word can name.
+const MAX_PRIMITIVES: u64 = Child::LIMIT as u64 / 2;
+
+/// Builds columns, lights, materials and the tree, on the current rayon pool.
 ///
 /// # Errors
 /// [`CompileError`].
 pub fn compile(description: &SceneDescription) -> Result<Scene, CompileError> {
-    let _ = description;
-    Ok(Scene::default())
+    let (materials, textures, material_ids) = materials::compile(&description.materials);
+    let mut lights = lights::without_surface(&description.emitters);
+    let shapes::Shapes { surfaces, references, degenerate } =
+        shapes::compile(&description.shapes, &material_ids, &mut lights)?;
+    let triangles = surfaces.triangles.len() as u64 - degenerate;
+    let quadrics = (surfaces.spheres.len() + surfaces.canonicals.len()) as u64;
+
+    let start = Instant::now();
+    let bvh = Bvh::build(references);
+    let primitives = Primitives::new(bvh.slots(), |id| surfaces.primitive(id));
+    let bvh_time = start.elapsed();
+
+    let summary = Summary {
+        triangles,
+        quadrics,
+        degenerate,
+        materials: materials.len() as u32,
+        lights: lights.len() as u32,
+        bvh_nodes: bvh.nodes().len() as u64,
+        bvh_bytes: (size_of_val(bvh.nodes()) + primitives.bytes()) as u64,
+        bvh_time,
+    };
+    let environments = (0..lights.len()).filter(|&i| lights[i].environment().is_some());
+    let environments = environments.map(|i| LightId(i as u32)).collect();
+    Ok(Scene {
+        primitives,
+        bvh,
+        surfaces,
+        materials,
+        textures,
+        lights,
+        environments,
+        camera: camera(&description.sensor),
+        film: description.sensor.film,
+        sampler: description.sensor.sampler,
+        integrator: description.integrator.clone(),
+        summary,
+    })
 }
+
+fn camera(sensor: &Sensor) -> Camera {
+    let size = (sensor.film.width, sensor.film.height);
+    let clip = (sensor.near_clip, sensor.far_clip);
+    match sensor.projection {
+        Projection::Perspective { x_fov } => {
+            Camera::perspective(sensor.to_world, libm::tan(x_fov / 2.0), size, clip)
+        }
+        Projection::Orthographic => Camera::orthographic(sensor.to_world, size, clip),
+    }
+}
+
+/// References for the tree: a box, an index and a class for each primitive that can be hit.
+type References = Vec<Reference>;

@@ -1,6 +1,6 @@
 //! Errors and warnings that name the place and the way out.
 
-use std::{fmt, ops::Range, path::Path};
+use std::{error::Error, fmt, ops::Range, path::Path};
 
 use miette::{Diagnostic, NamedSource, SourceSpan};
 
@@ -9,9 +9,12 @@ use miette::{Diagnostic, NamedSource, SourceSpan};
 /// `Display` is one line, `file:line:column: what is wrong` (line and column, counted from 1, only
 /// where the file is text); as a [`miette::Diagnostic`] it also shows the offending text underlined,
 /// and the help.
-#[derive(Debug, Clone, thiserror::Error)]
-#[error("{place}: {message}")]
-pub struct LoadError {
+// Boxed: every function of `load/` returns it, and none of them should pay for it when all is well.
+#[derive(Debug, Clone)]
+pub struct LoadError(Box<Inner>);
+
+#[derive(Debug, Clone)]
+struct Inner {
     place: String,
     message: String,
     label: String,
@@ -22,64 +25,81 @@ pub struct LoadError {
 impl LoadError {
     /// Something is wrong with the file as a whole, or with a place that `message` describes.
     pub fn new(path: &Path, message: impl Into<String>) -> Self {
-        Self {
+        Self(Box::new(Inner {
             place: path.display().to_string(),
             message: message.into(),
             label: "here".into(),
             help: None,
             excerpt: None,
-        }
+        }))
     }
 
     /// Something is wrong at a byte range of a text file.
     pub fn at(path: &Path, text: &str, range: Range<usize>, message: impl Into<String>) -> Self {
-        let start = text.floor_char_boundary(range.start.min(text.len()));
-        let before = &text[..start];
-        let line = before.matches('\n').count() + 1;
-        let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
+        let start = char_boundary(text, range.start);
         let name = path.display().to_string();
-        Self {
-            place: format!("{name}:{line}:{column}"),
-            excerpt: Some((
-                NamedSource::new(name, text.to_owned()),
-                (start, range.end.saturating_sub(start)).into(),
-            )),
-            ..Self::new(path, message)
-        }
+        let mut error = Self::new(path, message);
+        error.0.place = place(path, text, start);
+        error.0.excerpt = Some((
+            NamedSource::new(name, text.to_owned()),
+            (start, range.end.min(text.len()).saturating_sub(start)).into(),
+        ));
+        error
     }
 
     /// Words under the underlined text.
     #[must_use]
     pub fn label(mut self, label: impl Into<String>) -> Self {
-        self.label = label.into();
+        self.0.label = label.into();
         self
     }
 
     /// The way out.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
-        self.help = Some(help.into());
+        self.0.help = Some(help.into());
         self
     }
 
     /// `file` or `file:line:column`.
     pub fn place(&self) -> &str {
-        &self.place
+        &self.0.place
     }
 }
 
+/// `file:line:column` of a byte of a text file, counted from 1 in characters.
+pub(super) fn place(path: &Path, text: &str, byte: usize) -> String {
+    let before = &text[..char_boundary(text, byte)];
+    let line = before.matches('\n').count() + 1;
+    let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
+    format!("{}:{line}:{column}", path.display())
+}
+
+/// The last boundary of a character at or before a byte.
+fn char_boundary(text: &str, byte: usize) -> usize {
+    (0..=byte.min(text.len())).rev().find(|&byte| text.is_char_boundary(byte)).unwrap_or(0)
+}
+
+impl fmt::Display for LoadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.0.place, self.0.message)
+    }
+}
+
+impl Error for LoadError {}
+
 impl Diagnostic for LoadError {
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        self.help.as_ref().map(|help| Box::new(help) as Box<dyn fmt::Display>)
+        self.0.help.as_ref().map(|help| Box::new(help) as Box<dyn fmt::Display>)
     }
 
     fn source_code(&self) -> Option<&dyn miette::SourceCode> {
-        self.excerpt.as_ref().map(|(source, _)| source as &dyn miette::SourceCode)
+        self.0.excerpt.as_ref().map(|(source, _)| source as &dyn miette::SourceCode)
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = miette::LabeledSpan> + '_>> {
-        let (_, span) = self.excerpt.as_ref()?;
-        let label = miette::LabeledSpan::new_with_span(Some(self.label.clone()), *span);
+        let (_, span) = self.0.excerpt.as_ref()?;
+        let label = miette::LabeledSpan::new_with_span(Some(self.0.label.clone()), *span);
         Some(Box::new(std::iter::once(label)))
     }
 }
@@ -96,5 +116,20 @@ pub struct Warning {
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: {}", self.place, self.message)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_count_characters_from_one() {
+        let text = "äö\nü x";
+        for (byte, expected) in
+            [(0, "f:1:1"), (1, "f:1:1"), (2, "f:1:2"), (5, "f:2:1"), (8, "f:2:3"), (99, "f:2:4")]
+        {
+            assert_eq!(LoadError::at(Path::new("f"), text, byte..byte + 1, "").place(), expected, "{byte}");
+        }
     }
 }

@@ -1,12 +1,21 @@
 //! Files to a [`SceneDescription`]: the door at which bad numbers stop.
 
+mod bare;
 mod error;
+pub mod generate;
+mod mitsuba;
+mod mtl;
+mod obj;
+mod obj_materials;
+mod obj_text;
+mod ply;
+mod text;
 
 use std::path::Path;
 
 pub use error::{LoadError, Warning};
 
-use crate::scene::SceneDescription;
+use crate::scene::{Mesh, SceneDescription};
 
 /// What the command line may say about a file.
 #[derive(Clone, Debug, Default)]
@@ -24,11 +33,71 @@ pub struct Loaded {
     pub warnings: Vec<Warning>,
 }
 
-/// Loads a scene file (`.xml`) or a bare mesh (`.obj`, `.ply`).
+/// Loads a scene file (`.xml`), a bare mesh (`.obj`, `.ply`) or one made on the spot (`gen:`, see
+/// [`generate`]).
 ///
 /// # Errors
 /// [`LoadError`] with file, line, column and the way out.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
-    let _ = (path, options);
-    Ok(Loaded::default())
+    let mut warnings = Vec::new();
+    let description = match Kind::of(path) {
+        Kind::Mitsuba => return mitsuba::read_scene(path, &options.defines),
+        Kind::Mesh => bare::describe(path, &mut warnings)?,
+        Kind::Generated(spec) => bare::describe_mesh(spec.into(), generate::mesh(spec)?),
+        Kind::Other(extension) => return Err(unknown(path, &extension)),
+    };
+    Ok(Loaded { description, warnings })
+}
+
+/// Loads all triangles of a mesh, `.obj`, `.ply` or `gen:`, as one; materials are ignored.
+///
+/// # Errors
+/// [`LoadError`] as for [`load`].
+pub fn load_mesh(path: &Path) -> Result<(Mesh, Vec<Warning>), LoadError> {
+    let mut warnings = Vec::new();
+    let mesh = match Kind::of(path) {
+        Kind::Mesh if is_obj(path) => obj::read_mesh(path, &mut warnings)?,
+        Kind::Mesh => ply::read_mesh(path, &mut warnings)?,
+        Kind::Generated(spec) => generate::mesh(spec)?,
+        Kind::Mitsuba => {
+            return Err(
+                LoadError::new(path, "a scene is not a mesh").help("meshes are `.obj`, `.ply` or `gen:`")
+            );
+        }
+        Kind::Other(extension) => return Err(unknown(path, &extension)),
+    };
+    Ok((mesh, warnings))
+}
+
+/// What a path names.
+enum Kind<'a> {
+    Mitsuba,
+    Mesh,
+    /// What follows `gen:`.
+    Generated(&'a str),
+    Other(String),
+}
+
+impl<'a> Kind<'a> {
+    fn of(path: &'a Path) -> Self {
+        if let Some(spec) = path.to_str().and_then(|path| path.strip_prefix(generate::PREFIX)) {
+            return Self::Generated(spec);
+        }
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+        match extension.as_str() {
+            "xml" => Self::Mitsuba,
+            "obj" | "ply" => Self::Mesh,
+            _ => Self::Other(extension),
+        }
+    }
+}
+
+fn is_obj(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj"))
+}
+
+fn unknown(path: &Path, extension: &str) -> LoadError {
+    LoadError::new(path, format!("files of the kind `.{extension}` are not known")).help(
+        "scenes are Mitsuba 3 `.xml`; bare meshes are `.obj`, `.ply` or made on the spot: `gen:soup:100k`",
+    )
 }

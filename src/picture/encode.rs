@@ -1,8 +1,11 @@
 //! Pictures to files.
 
-use std::path::Path;
+use std::{fs::File, io, io::Write, path::Path};
 
-use super::{Picture, PictureError};
+use image::{ExtendedColorType, ImageEncoder, Rgb, codecs::hdr::HdrEncoder, codecs::png::PngEncoder};
+use tempfile::NamedTempFile;
+
+use super::{Picture, PictureError, limits, openexr, srgb};
 
 /// Kinds of file that can be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,6 +18,19 @@ pub enum Format {
     Png,
 }
 
+impl Format {
+    /// By the extension, in either case.
+    pub fn from_path(path: &Path) -> Option<Self> {
+        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+        match extension.as_str() {
+            "exr" => Some(Self::Exr),
+            "hdr" => Some(Self::Hdr),
+            "png" => Some(Self::Png),
+            _ => None,
+        }
+    }
+}
+
 /// How floats become 8 bits in a PNG.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Preview {
@@ -22,20 +38,247 @@ pub struct Preview {
     pub exposure: f32,
 }
 
-/// The bytes of a file.
+/// The bytes of a file: the same picture gives the same bytes.
 ///
 /// # Errors
 /// [`PictureError`] if the picture does not fit the format.
 pub fn encode(picture: &Picture, format: Format, preview: Preview) -> Result<Vec<u8>, PictureError> {
-    let _ = (picture, format, preview);
-    Ok(Vec::new())
+    encode_as(picture, format, preview)
+        .map_err(|reason| PictureError::Format { path: "picture".into(), reason })
 }
 
-/// Writes under a temporary name in the same folder, then renames.
+/// Writes under a temporary name in the same folder, then renames: under the name `path` there is
+/// always a whole file, the old one or the new one.
 ///
 /// # Errors
 /// [`PictureError`] if the extension is unknown or the file can't be written.
 pub fn save(picture: &Picture, path: &Path, preview: Preview) -> Result<(), PictureError> {
-    let _ = (picture, path, preview);
+    let refuse = |reason: String| PictureError::Format { path: path.into(), reason };
+    let format = Format::from_path(path)
+        .ok_or_else(|| refuse("unknown kind of picture; the name has to end in .exr, .hdr or .png".into()))?;
+    let bytes = encode_as(picture, format, preview).map_err(refuse)?;
+    write_whole(path, &bytes).map_err(|source| PictureError::Io { path: path.into(), source })
+}
+
+fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut file = temporary_in(folder)?;
+    file.write_all(bytes)?;
+    // Without it a crash of the machine can leave the new name with no content.
+    file.as_file().sync_all()?;
+    file.persist(path)?;
     Ok(())
+}
+
+/// Readable by everyone whom the umask allows, as files are by default and temporary files are not.
+fn temporary_in(folder: &Path) -> io::Result<NamedTempFile<File>> {
+    #[cfg(unix)]
+    {
+        use std::{fs::Permissions, os::unix::fs::PermissionsExt};
+        tempfile::Builder::new().permissions(Permissions::from_mode(0o644)).tempfile_in(folder)
+    }
+    #[cfg(not(unix))]
+    NamedTempFile::new_in(folder)
+}
+
+fn encode_as(picture: &Picture, format: Format, preview: Preview) -> Result<Vec<u8>, String> {
+    check(picture)?;
+    match format {
+        Format::Exr => openexr::encode(picture),
+        Format::Hdr => encode_hdr(picture),
+        Format::Png => encode_png(picture, preview),
+    }
+}
+
+fn check(picture: &Picture) -> Result<(), String> {
+    limits::check(picture.width.into(), picture.height.into(), picture.channels.len() as u64)?;
+    if picture.channels.is_empty() {
+        return Err("the picture has no channels".into());
+    }
+    let pixels = picture.width as usize * picture.height as usize;
+    for (i, channel) in picture.channels.iter().enumerate() {
+        if channel.samples.len() != pixels {
+            return Err(format!(
+                "channel {} has {} samples for {pixels} pixels",
+                channel.name,
+                channel.samples.len()
+            ));
+        }
+        if picture.channels[..i].iter().any(|other| other.name == channel.name) {
+            return Err(format!("two channels are called {}", channel.name));
+        }
+    }
+    Ok(())
+}
+
+/// Radiance RGBE, which holds neither negative numbers nor infinities: both are clamped.
+fn encode_hdr(picture: &Picture) -> Result<Vec<u8>, String> {
+    const LARGEST: f32 = 8.507_059e37;
+    const SMALLEST: f32 = 1.175_494_4e-38;
+    let pixels: Vec<Rgb<f32>> = colours(picture, "HDR")?
+        .map(|rgb| {
+            let rgb = rgb.map(|value| if value > 0.0 { value.min(LARGEST) } else { 0.0 });
+            // Below, the exponent would wrap round its byte.
+            if rgb.iter().all(|&value| value < SMALLEST) { Rgb([0.0; 3]) } else { Rgb(rgb) }
+        })
+        .collect();
+    let mut bytes = Vec::new();
+    HdrEncoder::new(&mut bytes)
+        .encode(&pixels, picture.width as usize, picture.height as usize)
+        .map_err(|error| error.to_string())?;
+    Ok(bytes)
+}
+
+fn encode_png(picture: &Picture, preview: Preview) -> Result<Vec<u8>, String> {
+    let scale = libm::exp2f(preview.exposure);
+    let pixels: Vec<u8> =
+        colours(picture, "PNG")?.flat_map(|rgb| rgb.map(|value| srgb::to_byte(value * scale))).collect();
+    let mut bytes = Vec::new();
+    PngEncoder::new(&mut bytes)
+        .write_image(&pixels, picture.width, picture.height, ExtendedColorType::Rgb8)
+        .map_err(|error| error.to_string())?;
+    Ok(bytes)
+}
+
+/// The pixels of a picture that has `R G B`.
+fn colours<'a>(picture: &'a Picture, kind: &str) -> Result<impl Iterator<Item = [f32; 3]> + 'a, String> {
+    let plane = |name| {
+        picture.plane(name).ok_or_else(|| {
+            let names: Vec<&str> = picture.channels.iter().map(|channel| channel.name.as_str()).collect();
+            format!("{kind} files hold R, G, B, the picture has {}; write it as .exr", names.join(", "))
+        })
+    };
+    let (r, g, b) = (plane("R")?, plane("G")?, plane("B")?);
+    Ok(r.iter().zip(g).zip(b).map(|((&r, &g), &b)| [r, g, b]))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+    use crate::picture::{Channel, Encoding, decode};
+
+    fn picture(width: u32, height: u32, value: impl Fn(usize) -> f32) -> Picture {
+        let pixels = (width * height) as usize;
+        let plane = |k: usize| (0..pixels).map(|i| value(3 * i + k)).collect();
+        let channels = ["R", "G", "B"].into_iter().enumerate();
+        let channels = channels.map(|(k, name)| Channel { name: name.into(), samples: plane(k) });
+        Picture { width, height, channels: channels.collect() }
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).unwrap();
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+    }
+
+    #[test]
+    fn bytes_survive_a_png() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let original = picture(16, 16, |i| srgb::BYTE_TO_LINEAR[i % 256]);
+        save(&original, &path, Preview::default()).unwrap();
+        assert_eq!(decode(&path, Encoding::Srgb).unwrap(), original);
+    }
+
+    #[test]
+    fn a_stop_doubles() {
+        let stop = Preview { exposure: 1.0 };
+        let dark = encode(&picture(1, 1, |_| 0.25), Format::Png, stop).unwrap();
+        assert_eq!(dark, encode(&picture(1, 1, |_| 0.5), Format::Png, Preview::default()).unwrap());
+        let nothing = encode(&picture(1, 1, |_| f32::NAN), Format::Png, stop).unwrap();
+        assert_eq!(nothing, encode(&picture(1, 1, |_| 0.0), Format::Png, stop).unwrap());
+    }
+
+    #[test]
+    fn hdr_keeps_eight_bits_of_the_brightest_colour() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.hdr");
+        let original = picture(16, 3, |i| (i as f32 - 20.0).exp2());
+        save(&original, &path, Preview::default()).unwrap();
+        let back = decode(&path, Encoding::Srgb).unwrap();
+        for i in 0..48 {
+            let brightest = original.channels[2].samples[i];
+            for (a, b) in original.channels.iter().zip(&back.channels) {
+                assert!((a.samples[i] - b.samples[i]).abs() <= brightest / 128.0);
+            }
+        }
+    }
+
+    #[test]
+    fn hdr_clamps_what_it_cannot_hold() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.hdr");
+        for (value, low, high) in [
+            (f32::NAN, 0.0, 0.0),
+            (-1.0, 0.0, 0.0),
+            (1e-42, 0.0, 0.0),
+            (f32::INFINITY, 1e37, 1e38),
+            (f32::MAX, 1e37, 1e38),
+        ] {
+            save(&picture(1, 1, |_| value), &path, Preview::default()).unwrap();
+            let back = decode(&path, Encoding::Raw).unwrap().channels[0].samples[0];
+            assert!((low..=high).contains(&back), "{value} came back as {back}");
+        }
+    }
+
+    #[test]
+    fn aovs_go_to_exr_only() {
+        let mut aov = picture(2, 2, |i| i as f32);
+        aov.channels[0].name = "dd.T".into();
+        for format in [Format::Png, Format::Hdr] {
+            let error = encode(&aov, format, Preview::default()).unwrap_err().to_string();
+            assert!(error.contains("dd.T, G, B; write it as .exr"), "{error}");
+        }
+        assert!(encode(&aov, Format::Exr, Preview::default()).is_ok());
+    }
+
+    #[test]
+    fn pictures_that_contradict_themselves_are_refused() {
+        let mut short = picture(2, 2, |_| 0.0);
+        short.channels[1].samples.pop();
+        let mut twice = picture(2, 2, |_| 0.0);
+        twice.channels[1].name = "R".into();
+        for wrong in [short, twice, Picture::default(), picture(0, 1, |_| 0.0)] {
+            for format in [Format::Exr, Format::Hdr, Format::Png] {
+                assert!(encode(&wrong, format, Preview::default()).is_err());
+            }
+        }
+    }
+
+    #[test]
+    fn saving_replaces_the_file_and_leaves_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.EXR");
+        for value in [1.0, 2.0] {
+            save(&picture(1, 1, |_| value), &path, Preview::default()).unwrap();
+            assert_eq!(decode(&path, Encoding::Raw).unwrap().channels[0].samples, [value]);
+        }
+        assert_eq!(names(folder.path()), ["a.EXR"]);
+    }
+
+    #[test]
+    fn a_failed_save_leaves_nothing_behind() {
+        let folder = tempfile::tempdir().unwrap();
+        let picture = picture(1, 1, |_| 1.0);
+        let error = save(&picture, &folder.path().join("a.gif"), Preview::default()).unwrap_err();
+        assert!(error.to_string().ends_with("has to end in .exr, .hdr or .png"), "{error}");
+        assert!(save(&picture, &folder.path().join("no/such/a.png"), Preview::default()).is_err());
+        // A folder stands where the file should go: writing succeeds, renaming fails.
+        fs::create_dir(folder.path().join("b.png")).unwrap();
+        assert!(save(&picture, &folder.path().join("b.png"), Preview::default()).is_err());
+        assert_eq!(names(folder.path()), ["b.png"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn saved_files_are_as_readable_as_others() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        save(&picture(1, 1, |_| 1.0), &path, Preview::default()).unwrap();
+        fs::write(folder.path().join("other"), "").unwrap();
+        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
+        assert_eq!(mode(&path), mode(&folder.path().join("other")));
+    }
 }

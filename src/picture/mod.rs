@@ -5,6 +5,9 @@
 mod decode;
 mod encode;
 mod error;
+mod limits;
+mod openexr;
+mod srgb;
 
 pub use decode::{Encoding, decode};
 pub use encode::{Format, Preview, encode, save};
@@ -19,6 +22,13 @@ pub struct Picture {
     pub height: u32,
     /// `R G B` for colours, in that order; any names for AOVs.
     pub channels: Vec<Channel>,
+}
+
+impl Picture {
+    /// The samples of a channel.
+    pub fn plane(&self, name: &str) -> Option<&[f32]> {
+        self.channels.iter().find(|channel| channel.name == name).map(|channel| channel.samples.as_slice())
+    }
 }
 
 /// One plane of a [`Picture`].

@@ -1,6 +1,6 @@
 //! What a render took, counted while it ran.
 
-use std::time::Duration;
+use std::{ops::AddAssign, time::Duration};
 
 /// Lanes that did work, of the lanes that ran.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -15,6 +15,27 @@ impl LaneUse {
     /// Active / total in [0, 1]; 0 if nothing ran.
     pub fn ratio(self) -> f64 {
         if self.total == 0 { 0.0 } else { self.active as f64 / self.total as f64 }
+    }
+}
+
+impl LaneUse {
+    /// Packets filled with this many rays.
+    pub(super) fn of_packets(rays: usize) -> Self {
+        let total = rays.next_multiple_of(crate::simd::LANES);
+        Self { active: rays as u64, total: total as u64 }
+    }
+
+    /// A group of eight with this many lanes at work.
+    pub(super) fn add(&mut self, active: u32) {
+        self.active += u64::from(active);
+        self.total += crate::simd::LANES as u64;
+    }
+}
+
+impl AddAssign for LaneUse {
+    fn add_assign(&mut self, other: Self) {
+        self.active += other.active;
+        self.total += other.total;
     }
 }
 
@@ -39,4 +60,20 @@ pub struct Statistics {
     pub first_invalid: Option<(u32, u32, u32)>,
     /// Wall time of rendering, without loading and building.
     pub time: Duration,
+}
+
+impl Statistics {
+    /// Adds the counts of another part of the same picture.
+    pub(super) fn merge(&mut self, other: &Self) {
+        self.samples += other.samples;
+        self.camera_rays += other.camera_rays;
+        self.bounce_rays += other.bounce_rays;
+        self.shadow_rays += other.shadow_rays;
+        self.trace_lanes += other.trace_lanes;
+        self.shade_lanes += other.shade_lanes;
+        self.invalid_samples += other.invalid_samples;
+        let in_picture_order = |&(x, y, sample): &(u32, u32, u32)| (y, x, sample);
+        self.first_invalid =
+            self.first_invalid.into_iter().chain(other.first_invalid).min_by_key(in_picture_order);
+    }
 }

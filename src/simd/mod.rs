@@ -1,1 +1,29 @@
-//! (skeleton)
+//! Lanes: eight floats, eight integers, eight truth values, and vectors of them.
+//!
+//! The only room that names `wide`. What is exported here has the same bits in every lane on every
+//! instruction set: `+ − × ÷ √`, comparisons and selection. There is no
+//! approximate reciprocal and no transcendental function; the one fused operation ([`f32x8::fused`]) is
+//! for tests that only cull.
+//!
+//! [`Real`] is implemented by `f32` and by [`f32x8`]: code that is generic over it *is* the scalar path
+//! and the eight-wide path, and can't drift apart.
+
+pub mod cpu;
+mod float;
+mod integer;
+mod mask;
+mod real;
+mod sort;
+#[cfg(test)]
+mod tests;
+mod vector;
+
+pub use float::{f32x8, transpose};
+pub use integer::u32x8;
+pub use mask::Mask8;
+pub use real::{Bits, Mask, Real};
+pub use sort::sort_descending;
+pub use vector::{Vec3x8, Vector3, vector3};
+
+/// Rays in a packet, lanes in a register.
+pub const LANES: usize = 8;

@@ -1,1 +1,119 @@
-//! (skeleton)
+//! Values that vary over a surface, fetched for many lanes at once.
+
+mod bitmap;
+
+pub use bitmap::{Bitmap, Filter, Wrap};
+
+use glam::{DAffine2, Vec3};
+
+use crate::simd::{Real, Vector3};
+
+/// Which texture of a [`TextureTable`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct TextureId(pub u32);
+
+/// An affine map of texture coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UvMap {
+    rows: [[f32; 3]; 2],
+}
+
+impl UvMap {
+    /// From the map in double precision.
+    pub fn new(map: DAffine2) -> Self {
+        let (m, t) = (map.matrix2, map.translation);
+        let row = |x: f64, y: f64, t: f64| [x as f32, y as f32, t as f32];
+        Self { rows: [row(m.x_axis.x, m.y_axis.x, t.x), row(m.x_axis.y, m.y_axis.y, t.y)] }
+    }
+
+    /// The image of (u, v).
+    #[inline]
+    pub fn apply<R: Real>(&self, (u, v): (R, R)) -> (R, R) {
+        let row = |[a, b, c]: [f32; 3]| R::splat(a) * u + R::splat(b) * v + R::splat(c);
+        (row(self.rows[0]), row(self.rows[1]))
+    }
+}
+
+/// A texture ready to be evaluated; the meaning is that of the scene's description.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Texture {
+    /// The same everywhere, linear sRGB.
+    Constant(Vec3),
+    /// `colors[0]` where (frac u > ½) == (frac v > ½).
+    Checkerboard {
+        /// Linear sRGB.
+        colors: [Vec3; 2],
+        /// Applied first.
+        map: UvMap,
+    },
+    /// A picture.
+    Bitmap {
+        /// The texels.
+        bitmap: Bitmap,
+        /// Applied first.
+        map: UvMap,
+    },
+}
+
+/// All textures of a scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TextureTable {
+    textures: Vec<Texture>,
+}
+
+impl TextureTable {
+    /// Adds a texture; equal constants share a place.
+    pub fn add(&mut self, texture: Texture) -> TextureId {
+        let shared = match texture {
+            Texture::Constant(_) => self.textures.iter().position(|t| *t == texture),
+            _ => None,
+        };
+        let place = shared.unwrap_or_else(|| {
+            self.textures.push(texture);
+            self.textures.len() - 1
+        });
+        TextureId(place as u32)
+    }
+
+    /// The colour of one texture at each lane's (u, v).
+    #[inline]
+    pub fn fetch<R: Real>(&self, id: TextureId, uv: (R, R)) -> Vector3<R> {
+        match &self.textures[id.0 as usize] {
+            Texture::Constant(color) => Vector3::splat(*color),
+            Texture::Checkerboard { colors, map } => {
+                let (u, v) = map.apply(uv);
+                let high = |x: R| (x - x.floor()).gt(R::splat(0.5));
+                let (u, v) = (high(u), high(v));
+                let same = (u & v) | (!u & !v);
+                Vector3::select(same, Vector3::splat(colors[0]), Vector3::splat(colors[1]))
+            }
+            Texture::Bitmap { bitmap, map } => bitmap.fetch(map.apply(uv)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::f32x8;
+
+    #[test]
+    fn checkerboard_has_two_fields_a_unit_and_color0_at_the_origin() {
+        let mut table = TextureTable::default();
+        let map = UvMap::new(DAffine2::from_scale(glam::dvec2(8.0, 4.0)));
+        let id = table.add(Texture::Checkerboard { colors: [Vec3::ONE, Vec3::ZERO], map });
+        for (u, v, want) in
+            [(0.01, 0.01, 1.0), (0.1, 0.01, 0.0), (0.1, 0.2, 1.0), (-0.01, 0.01, 0.0), (1.01, 0.01, 1.0)]
+        {
+            assert_eq!(table.fetch::<f32>(id, (u, v)).x, want, "{u} {v}");
+            assert_eq!(table.fetch(id, (f32x8::splat(u), f32x8::splat(v))).x.lane(5), want);
+        }
+    }
+
+    #[test]
+    fn equal_constants_share_a_place() {
+        let mut table = TextureTable::default();
+        let [a, b, c] = [0.5, 0.25, 0.5].map(|x| table.add(Texture::Constant(Vec3::splat(x))));
+        assert_eq!((a, a != b), (c, true));
+    }
+}

@@ -1,0 +1,133 @@
+//! Bounds on rays that point into one octant.
+//!
+//! A beam is an interval of origins and one of reciprocal directions along each axis, a beam a lane. The
+//! bounds on products of intervals are taken with the rounded operations of the exact slab test, which are
+//! monotone, so a box that a ray of the beam enters is never culled.
+
+use super::Node;
+use crate::geometry::{Rayx8, aabb};
+use crate::simd::{Mask8, Real, f32x8, transpose};
+
+/// Beams in lanes, all into one octant.
+pub(super) struct Beam {
+    /// Rows of [`Node::bounds`] that the rays meet first.
+    near_rows: [usize; 3],
+    /// The origin that makes a near plane nearest.
+    near_org: [f32x8; 3],
+    /// The origin that makes a far plane farthest.
+    far_org: [f32x8; 3],
+    /// The reciprocal direction of least magnitude.
+    rdir_least: [f32x8; 3],
+    /// That of greatest magnitude: infinite if a ray lies in the planes of the axis.
+    rdir_greatest: [f32x8; 3],
+    t_near: f32x8,
+}
+
+/// Least and greatest of a quantity, in lanes.
+type Range = (f32x8, f32x8);
+
+impl Beam {
+    /// One beam around the active rays of a packet, in all lanes; `None` if they point into several
+    /// octants.
+    pub(super) fn of_packet(ray: &Rayx8, active: Mask8) -> Option<Self> {
+        let low = |x: f32x8| f32x8::select(active, x, f32x8::splat(f32::INFINITY)).reduce_min();
+        let high = |x: f32x8| f32x8::select(active, x, f32x8::splat(f32::NEG_INFINITY)).reduce_max();
+        let range = |x: f32x8| (f32x8::splat(low(x)), f32x8::splat(high(x)));
+        let t_near = f32x8::splat(low(ray.t_near));
+        let (org, rdir) = ([ray.org.x, ray.org.y, ray.org.z], [ray.rdir.x, ray.rdir.y, ray.rdir.z]);
+        Self::new(org.map(range), rdir.map(range), t_near)
+    }
+
+    /// Eight beams, each around a whole packet; `None` if the packets point into several octants.
+    pub(super) fn of_packets(packets: &[Rayx8; 8]) -> Option<Self> {
+        // Transposed, a packet is a lane, and what was a reduction is seven operations for all of them.
+        let range = |of: fn(&Rayx8) -> f32x8| -> Range {
+            let [first, rest @ ..] = transpose(std::array::from_fn(|i| of(&packets[i])));
+            rest.into_iter().fold((first, first), |(low, high), x| (x.min(low), x.max(high)))
+        };
+        let org = [range(|p| p.org.x), range(|p| p.org.y), range(|p| p.org.z)];
+        let rdir = [range(|p| p.rdir.x), range(|p| p.rdir.y), range(|p| p.rdir.z)];
+        Self::new(org, rdir, range(|p| p.t_near).0)
+    }
+
+    /// One beam around all lanes, in all lanes.
+    pub(super) fn around(&self) -> Self {
+        let low = |x: f32x8| f32x8::splat(x.reduce_min());
+        let high = |x: f32x8| f32x8::splat(x.reduce_max());
+        let mut beam = Self { t_near: low(self.t_near), ..*self };
+        for axis in 0..3 {
+            let negative = self.near_rows[axis] >= 3;
+            let (near, far) = (self.near_org[axis], self.far_org[axis]);
+            let (least, greatest) = (self.rdir_least[axis], self.rdir_greatest[axis]);
+            (beam.near_org[axis], beam.far_org[axis]) =
+                if negative { (low(near), high(far)) } else { (high(near), low(far)) };
+            (beam.rdir_least[axis], beam.rdir_greatest[axis]) =
+                if negative { (high(least), low(greatest)) } else { (low(least), high(greatest)) };
+        }
+        beam
+    }
+
+    fn new(org: [Range; 3], rdir: [Range; 3], t_near: f32x8) -> Option<Self> {
+        let zero = [f32x8::default(); 3];
+        let mut beam = Self {
+            near_rows: [0; 3],
+            near_org: zero,
+            far_org: zero,
+            rdir_least: zero,
+            rdir_greatest: zero,
+            t_near,
+        };
+        for axis in 0..3 {
+            let ((org_low, org_high), (low, high)) = (org[axis], rdir[axis]);
+            let negative = high.lt(f32x8::zero());
+            if negative.all() {
+                beam.near_rows[axis] = axis + 3;
+                (beam.near_org[axis], beam.far_org[axis]) = (org_low, org_high);
+                (beam.rdir_least[axis], beam.rdir_greatest[axis]) = (high, low);
+            } else if low.ge(f32x8::zero()).all() {
+                beam.near_rows[axis] = axis;
+                (beam.near_org[axis], beam.far_org[axis]) = (org_high, org_low);
+                (beam.rdir_least[axis], beam.rdir_greatest[axis]) = (low, high);
+            } else {
+                return None;
+            }
+        }
+        Some(beam)
+    }
+
+    /// Rows of the planes met first, and of the others.
+    #[inline]
+    pub(super) fn rows(&self) -> ([usize; 3], [usize; 3]) {
+        (self.near_rows, self.near_rows.map(|row| (row + 3) % 6))
+    }
+
+    /// Which lanes may enter their box, and a bound on where. `planes(row)` gives the bounds of a row.
+    #[inline]
+    pub(super) fn meets(&self, planes: impl Fn(usize) -> f32x8, farthest: f32x8) -> (Mask8, f32x8) {
+        let (near_rows, far_rows) = self.rows();
+        let (mut low, mut high) = (self.t_near, farthest);
+        for axis in 0..3 {
+            let near = planes(near_rows[axis]) - self.near_org[axis];
+            let far = planes(far_rows[axis]) - self.far_org[axis];
+            // 0·∞: a ray in the plane itself, which does not constrain. NaN is kept because it stands
+            // on the right, and then loses against `low` and `high`.
+            let near = (near * self.rdir_least[axis]).min(near * self.rdir_greatest[axis]);
+            let far = (far * self.rdir_least[axis]).max(far * self.rdir_greatest[axis]);
+            low = near.max(low);
+            high = (far * f32x8::splat(aabb::WIDEN)).min(high);
+        }
+        (low.le(high), low)
+    }
+
+    /// The children of a node that a beam may enter; lanes are children, and so all lanes one beam.
+    #[inline]
+    pub(super) fn children(&self, node: &Node, farthest: f32) -> (Mask8, f32x8) {
+        self.meets(|row| f32x8::from(node.bounds[row]), f32x8::splat(farthest))
+    }
+
+    /// The beams that may enter a child; lanes are beams.
+    #[inline]
+    pub(super) fn beams(&self, node: &Node, place: usize, farthest: f32x8) -> Mask8 {
+        self.meets(|row| f32x8::splat(node.bounds[row][place]), farthest).0
+    }
+}

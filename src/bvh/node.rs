@@ -1,0 +1,153 @@
+//! Eight boxes and what is behind them.
+
+use crate::geometry::Aabb;
+use crate::simd::{Vec3x8, f32x8, vector3};
+
+/// Eight children: 256 bytes, four cache lines.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct Node {
+    /// Rows of bounds: min x y z, max x y z. An absent child has an empty box.
+    pub bounds: [[f32; 8]; 6],
+    /// What is behind each box.
+    pub children: [Child; 8],
+}
+
+/// A 32-bit word: an inner node's index, or a leaf's first slot and count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Child(u32);
+
+/// What a [`Child`] means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Nothing.
+    Absent,
+    /// The node at this index.
+    Inner(u32),
+    /// `count` slots from `first` on, all in one block.
+    Leaf {
+        /// Slot.
+        first: u32,
+        /// 1 to 8.
+        count: u32,
+    },
+}
+
+impl Child {
+    /// No child.
+    pub const ABSENT: Self = Self(u32::MAX);
+    /// Slots and inner nodes are fewer than this.
+    pub const LIMIT: u32 = (1 << 28) - 1;
+    const LEAF: u32 = 1 << 31;
+
+    /// The node at `index`, below [`Child::LIMIT`].
+    #[inline]
+    pub fn inner(index: u32) -> Self {
+        debug_assert!(index < Self::LIMIT);
+        Self(index)
+    }
+
+    /// `count` in 1..=8 slots from `first`, below [`Child::LIMIT`].
+    #[inline]
+    pub fn leaf(first: u32, count: u32) -> Self {
+        debug_assert!(first < Self::LIMIT && (1..=8).contains(&count));
+        Self(Self::LEAF | (count - 1) << 28 | first)
+    }
+
+    /// Is it a leaf? False for an absent child, too.
+    #[inline]
+    pub fn is_leaf(self) -> bool {
+        self.0 & Self::LEAF != 0 && self != Self::ABSENT
+    }
+
+    /// Is it anything but an inner node?
+    #[inline]
+    pub(super) fn is_leaf_or_absent(self) -> bool {
+        self.0 & Self::LEAF != 0
+    }
+
+    /// The index of an inner node.
+    #[inline]
+    pub(super) fn index(self) -> usize {
+        self.0 as usize
+    }
+
+    #[inline]
+    pub(super) fn word(self) -> u32 {
+        self.0
+    }
+
+    #[inline]
+    pub(super) fn from_word(word: u32) -> Self {
+        Self(word)
+    }
+
+    /// The word, taken apart.
+    #[inline]
+    pub fn kind(self) -> Kind {
+        if self == Self::ABSENT {
+            Kind::Absent
+        } else if self.0 & Self::LEAF == 0 {
+            Kind::Inner(self.0)
+        } else {
+            Kind::Leaf { first: self.0 & (Self::LEAF - 1) >> 3, count: (self.0 >> 28 & 7) + 1 }
+        }
+    }
+}
+
+impl Node {
+    /// No children.
+    pub const EMPTY: Self = Self {
+        bounds: [
+            [f32::INFINITY; 8],
+            [f32::INFINITY; 8],
+            [f32::INFINITY; 8],
+            [f32::NEG_INFINITY; 8],
+            [f32::NEG_INFINITY; 8],
+            [f32::NEG_INFINITY; 8],
+        ],
+        children: [Child::ABSENT; 8],
+    };
+
+    /// Puts a child in its place.
+    pub fn set(&mut self, place: usize, bounds: Aabb, child: Child) {
+        for axis in 0..3 {
+            self.bounds[axis][place] = bounds.min[axis];
+            self.bounds[axis + 3][place] = bounds.max[axis];
+        }
+        self.children[place] = child;
+    }
+
+    /// The box of a child.
+    #[inline]
+    pub fn child_bounds(&self, place: usize) -> Aabb {
+        let row = |axis: usize| self.bounds[axis][place];
+        Aabb { min: glam::vec3(row(0), row(1), row(2)), max: glam::vec3(row(3), row(4), row(5)) }
+    }
+
+    /// All eight boxes: (min, max).
+    #[inline]
+    pub fn lanes(&self) -> (Vec3x8, Vec3x8) {
+        let row = |axis: usize| f32x8::from(self.bounds[axis]);
+        (vector3(row(0), row(1), row(2)), vector3(row(3), row(4), row(5)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_keep_what_is_put_in() {
+        assert_eq!(size_of::<Node>(), 256);
+        for first in [0, 1, 77, Child::LIMIT - 1] {
+            assert_eq!(Child::inner(first).kind(), Kind::Inner(first));
+            for count in 1..=8 {
+                assert_eq!(Child::leaf(first, count).kind(), Kind::Leaf { first, count });
+                assert!(Child::leaf(first, count).is_leaf());
+            }
+        }
+        assert_eq!(Child::ABSENT.kind(), Kind::Absent);
+        assert!(!Child::ABSENT.is_leaf() && !Child::inner(3).is_leaf());
+    }
+}

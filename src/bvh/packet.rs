@@ -1,0 +1,131 @@
+//! Eight rays through the tree together.
+//!
+//! Where all rays of a packet point into the same octant, a node is tested twice: first the interval of
+//! the whole packet against all eight boxes at once (lanes are boxes), then the eight rays against each
+//! box that is left (lanes are rays). The first test never culls what the second would keep (see
+//! `beam`).
+
+use super::{Bvh, Child, Hitx8, Kind, Leaves, Node, Tally, Traversal, beam::Beam};
+use crate::geometry::{Rayx8, aabb};
+use crate::simd::{Mask, Mask8, Real, Vector3, f32x8, vector3};
+
+impl Bvh {
+    /// Traces the `active` rays of a packet; `hit` holds their limits in `t` and receives what is found.
+    ///
+    /// For `ANY`, lanes that are blocked get t = −∞. Lanes that are not active are left as they are.
+    pub fn intersect_packet<const ANY: bool, L: Leaves, T: Tally>(
+        &self,
+        leaves: &L,
+        ray: &Rayx8,
+        active: Mask8,
+        hit: &mut Hitx8,
+        traversal: &mut Traversal<T>,
+    ) {
+        if self.nodes.is_empty() || active.none() {
+            return;
+        }
+        let waiting = hit.t;
+        // No box is entered before −∞: lanes without work fail every comparison by themselves.
+        hit.t = f32x8::select(active, hit.t, f32x8::splat(f32::NEG_INFINITY));
+        let beam = Beam::of_packet(ray, active);
+        let Traversal { stack, tally } = traversal;
+        stack[0] = (Child::inner(0), f32::NEG_INFINITY);
+        let mut top = 1;
+        let mut farthest = hit.t.reduce_max();
+        while top > 0 {
+            top -= 1;
+            let (child, enter) = stack[top];
+            if enter > farthest {
+                continue;
+            }
+            match child.kind() {
+                Kind::Absent => {}
+                Kind::Inner(index) => {
+                    let node = &self.nodes[index as usize];
+                    tally.node(active.count());
+                    let below = &mut stack[top..];
+                    top += match &beam {
+                        Some(beam) => enter_together(node, ray, beam, hit.t, farthest, below),
+                        None => enter_apart(node, ray, hit.t, below),
+                    };
+                }
+                Kind::Leaf { first, count } => {
+                    tally.leaf(count, active.count());
+                    leaves.intersect_packet::<ANY>(first, count, ray, active, hit);
+                    farthest = hit.t.reduce_max();
+                    if ANY && farthest == f32::NEG_INFINITY {
+                        break;
+                    }
+                }
+            }
+        }
+        hit.t = f32x8::select(active, hit.t, waiting);
+    }
+}
+
+/// Pushes the children that some ray enters, nearest last, and returns how many.
+#[inline]
+fn enter_together(
+    node: &Node,
+    ray: &Rayx8,
+    beam: &Beam,
+    t_far: f32x8,
+    farthest: f32,
+    stack: &mut [(Child, f32)],
+) -> usize {
+    let (candidates, enters) = beam.children(node, farthest);
+    let (mut candidates, enters) = (candidates.to_bitmask(), enters.to_array());
+    let (near_rows, far_rows) = beam.rows();
+    let mut count = 0;
+    while candidates != 0 {
+        let place = candidates.trailing_zeros() as usize;
+        candidates &= candidates - 1;
+        let plane = |row: usize| f32x8::splat(node.bounds[row][place]);
+        let near = vector3(plane(near_rows[0]), plane(near_rows[1]), plane(near_rows[2]));
+        let far = vector3(plane(far_rows[0]), plane(far_rows[1]), plane(far_rows[2]));
+        let (near, far) =
+            ((near - ray.org) * ray.rdir, ((far - ray.org) * ray.rdir).scale(f32x8::splat(aabb::WIDEN)));
+        let low = near.z.max(near.y.max(near.x.max(ray.t_near)));
+        let high = far.z.min(far.y.min(far.x.min(t_far)));
+        if low.le(high).any() {
+            insert(stack, count, (node.children[place], enters[place]));
+            count += 1;
+        }
+    }
+    count
+}
+
+/// The same for rays that point anywhere.
+#[inline]
+fn enter_apart(node: &Node, ray: &Rayx8, t_far: f32x8, stack: &mut [(Child, f32)]) -> usize {
+    let mut count = 0;
+    for place in 0..8 {
+        if node.children[place] == Child::ABSENT {
+            continue;
+        }
+        let bounds = node.child_bounds(place);
+        let (low, high) = aabb::interval(
+            (Vector3::splat(bounds.min), Vector3::splat(bounds.max)),
+            (ray.org, ray.rdir),
+            (ray.t_near, t_far),
+        );
+        let enters = low.le(high);
+        if enters.any() {
+            let first = f32x8::select(enters, low, f32x8::splat(f32::INFINITY)).reduce_min();
+            insert(stack, count, (node.children[place], first));
+            count += 1;
+        }
+    }
+    count
+}
+
+/// Insertion into the `count` entries at the front, in order of falling distance.
+#[inline]
+pub(super) fn insert(stack: &mut [(Child, f32)], count: usize, entry: (Child, f32)) {
+    let mut place = count;
+    while place > 0 && stack[place - 1].1 < entry.1 {
+        stack[place] = stack[place - 1];
+        place -= 1;
+    }
+    stack[place] = entry;
+}

@@ -1,0 +1,129 @@
+//! Sixty-four rays through the tree together: eight packets into one octant.
+//!
+//! A node is tested by the bounds of all rays against its eight boxes (lanes are boxes), then by the bounds
+//! of the eight packets against each box that is left (lanes are packets); only where a leaf hangs do the
+//! rays themselves test its box. A step that a packet would take eight times is so taken once.
+
+use super::{Bvh, Child, Hitx8, Kind, Leaves, Node, Tally, Traversal, beam::Beam};
+use crate::geometry::{Rayx8, aabb};
+use crate::simd::{Mask, Mask8, Real, f32x8, vector3};
+
+/// Packets in a tile.
+pub(super) const PACKETS: usize = 8;
+
+impl Bvh {
+    /// Traces a tile; `hits` as for [`Bvh::intersect_packet`]. Returns false, and has done nothing, if the
+    /// rays do not point into one octant.
+    pub(super) fn intersect_tile<const ANY: bool, L: Leaves, T: Tally>(
+        &self,
+        leaves: &L,
+        packets: &[Rayx8; PACKETS],
+        hits: &mut [Hitx8; PACKETS],
+        traversal: &mut Traversal<T>,
+    ) -> bool {
+        let Some(beams) = Beam::of_packets(packets) else {
+            return false;
+        };
+        if self.nodes.is_empty() {
+            return true;
+        }
+        let all = beams.around();
+        let Traversal { stack, tally } = traversal;
+        let mut farthest = f32x8::from_fn(|i| hits[i].t.reduce_max());
+        let mut end = farthest.reduce_max();
+        let mut masks = [0u8; super::STACK];
+        stack[0] = (Child::inner(0), f32::NEG_INFINITY);
+        masks[0] = u8::MAX;
+        let mut top = 1;
+        while top > 0 {
+            top -= 1;
+            let ((child, enter), mask) = (stack[top], u32::from(masks[top]));
+            if enter > end {
+                continue;
+            }
+            let mask = mask & f32x8::splat(enter).le(farthest).to_bitmask();
+            match child.kind() {
+                Kind::Absent => {}
+                Kind::Inner(index) => {
+                    let node = &self.nodes[index as usize];
+                    (0..mask.count_ones()).for_each(|_| tally.node(8));
+                    let (candidates, enters) = all.children(node, end);
+                    let enters = enters.to_array();
+                    let mut candidates = candidates.to_bitmask();
+                    let bottom = top;
+                    while candidates != 0 {
+                        let place = candidates.trailing_zeros() as usize;
+                        candidates &= candidates - 1;
+                        let mut mask = mask & beams.beams(node, place, farthest).to_bitmask();
+                        let child = node.children[place];
+                        if child.is_leaf() {
+                            mask = rays_enter(node, place, &beams, packets, hits, mask);
+                        }
+                        if mask != 0 {
+                            let mut at = top;
+                            while at > bottom && stack[at - 1].1 < enters[place] {
+                                (stack[at], masks[at]) = (stack[at - 1], masks[at - 1]);
+                                at -= 1;
+                            }
+                            (stack[at], masks[at]) = ((child, enters[place]), mask as u8);
+                            top += 1;
+                        }
+                    }
+                }
+                Kind::Leaf { first, count } => {
+                    let mut left = mask;
+                    let mut limits = farthest.to_array();
+                    while left != 0 {
+                        let packet = left.trailing_zeros() as usize;
+                        left &= left - 1;
+                        tally.leaf(count, 8);
+                        let hit = &mut hits[packet];
+                        leaves.intersect_packet::<ANY>(
+                            first,
+                            count,
+                            &packets[packet],
+                            Mask8::splat(true),
+                            hit,
+                        );
+                        limits[packet] = hit.t.reduce_max();
+                    }
+                    farthest = f32x8::from(limits);
+                    end = farthest.reduce_max();
+                    if ANY && end == f32::NEG_INFINITY {
+                        return true;
+                    }
+                }
+            }
+        }
+        true
+    }
+}
+
+/// Which of the packets in `mask` have a ray that enters a child's box.
+#[inline]
+fn rays_enter(
+    node: &Node,
+    place: usize,
+    beams: &Beam,
+    packets: &[Rayx8; PACKETS],
+    hits: &[Hitx8; PACKETS],
+    mask: u32,
+) -> u32 {
+    let (near, far) = beams.rows();
+    let plane = |row: usize| f32x8::splat(node.bounds[row][place]);
+    let near = vector3(plane(near[0]), plane(near[1]), plane(near[2]));
+    let far = vector3(plane(far[0]), plane(far[1]), plane(far[2]));
+    let mut entered = 0;
+    let mut left = mask;
+    while left != 0 {
+        let packet = left.trailing_zeros() as usize;
+        left &= left - 1;
+        let ray = &packets[packet];
+        let near = (near - ray.org) * ray.rdir;
+        let far = ((far - ray.org) * ray.rdir).scale(f32x8::splat(aabb::WIDEN));
+        let low = near.z.max(near.y.max(near.x.max(ray.t_near)));
+        let high = far.z.min(far.y.min(far.x.min(hits[packet].t)));
+        entered |= u32::from(low.le(high).any()) << packet;
+    }
+    entered
+}

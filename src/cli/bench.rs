@@ -1,0 +1,163 @@
+//! `packlight bench`: how fast rays are traced, the scene's own or those of a file.
+
+mod measure;
+mod row;
+
+use std::{fs, path::PathBuf, sync::Arc};
+
+use clap::Args;
+use glam::DAffine3;
+
+use super::{
+    console,
+    failure::{Failure, warn, warn_of},
+    source::{Source, definition},
+    threads,
+};
+use crate::{
+    compile::{Scene, compile},
+    geometry::ray_file::{RayFile, encode},
+    load::load_mesh,
+    render::{Query, RayClass, ray_classes},
+    scene::{Geometry, Material, MaterialIndex, SceneDescription, Shape},
+};
+use row::{Build, Row};
+
+/// Arguments of `bench`.
+#[derive(Clone, Debug, Args)]
+pub(super) struct Arguments {
+    /// Scene or bare mesh, as for `render`; without --rays its own camera, shadow, ambient occlusion
+    /// and bounce rays are traced
+    #[arg(value_name = "SCENE", required_unless_present = "mesh", conflicts_with = "mesh")]
+    scene: Option<PathBuf>,
+
+    /// Value of `$NAME` in the scene, stronger than its <default>; repeatable
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
+    defines: Vec<(String, String)>,
+
+    /// In place of a scene: the triangles of an .obj or .ply file, or made on the spot
+    /// (gen:KIND:N[:SEED] with KIND soup, terrain, spheres or hair and N like 100k)
+    #[arg(long, value_name = "MESH", requires = "rays")]
+    mesh: Option<PathBuf>,
+
+    /// Rays to trace: raw little-endian f32, ox oy oz t_near dx dy dz t_far for each
+    #[arg(long, value_name = "FILE")]
+    rays: Option<PathBuf>,
+
+    /// What is asked of the rays of a file: closest (the nearest hit) or any (is it blocked?)
+    #[arg(long, value_name = "QUERY", requires = "rays", default_value = "closest", value_parser = query)]
+    query: Query,
+
+    /// Write the scene's own rays into this folder, a file a class
+    #[arg(long, value_name = "DIR", conflicts_with = "rays")]
+    save_rays: Option<PathBuf>,
+
+    /// Threads; one a core if not given
+    #[arg(long, value_name = "N", value_parser = threads::count())]
+    threads: Option<usize>,
+
+    /// Timed runs after a warm-up; the best counts
+    #[arg(long, value_name = "K", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    repeat: u32,
+
+    /// One JSON object a class on stdout, a line each, without the single-ray path
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    threads::pool(arguments.threads)?.install(|| bench(arguments))
+}
+
+fn bench(arguments: &Arguments) -> Result<(), Failure> {
+    // Before the scene: a slip in the name of a file should not cost the time to build a tree.
+    let file = arguments.read_rays()?;
+    let scene = compile(&arguments.describe()?)?;
+    let (classes, invalid) = match file {
+        Some((class, invalid)) => (vec![class], invalid),
+        None => (ray_classes(&scene), 0),
+    };
+    if let Some(folder) = &arguments.save_rays {
+        save(folder, &classes)?;
+    }
+    if !arguments.json {
+        console::print(&Build::new(arguments.name(), scene.summary()).to_string())?;
+    }
+    for class in &classes {
+        arguments.measure(&scene, class, invalid)?;
+    }
+    Ok(())
+}
+
+impl Arguments {
+    fn name(&self) -> String {
+        self.scene.as_ref().or(self.mesh.as_ref()).map(|path| path.display().to_string()).unwrap_or_default()
+    }
+
+    fn measure(&self, scene: &Scene, class: &RayClass, invalid: u64) -> Result<(), Failure> {
+        let packets = measure::packets(scene, class, self.repeat);
+        let mut row = Row::new(class, invalid, packets, scene.summary());
+        if self.json {
+            return console::print_json_line(&row);
+        }
+        let singles = measure::singles(scene, class, self.repeat);
+        if (packets.hits, packets.t_sum.to_bits()) != (singles.hits, singles.t_sum.to_bits()) {
+            warn_of(format!("{}: packets and single rays differ; please report it", class.name));
+        }
+        row.compare(singles, measure::count_packets(scene, class), measure::count_singles(scene, class));
+        console::print(&row.to_string())
+    }
+
+    fn read_rays(&self) -> Result<Option<(RayClass, u64)>, Failure> {
+        let Some(path) = &self.rays else {
+            return Ok(None);
+        };
+        let refuse = |message: String| Failure::Sentence(format!("{}: {message}", path.display()));
+        let bytes = fs::read(path).map_err(|error| refuse(error.to_string()))?;
+        let RayFile { rays, invalid } = RayFile::decode(&bytes).map_err(|error| refuse(error.to_string()))?;
+        if rays.is_empty() {
+            return Err(refuse("there are no rays in the file".into()));
+        }
+        Ok(Some((RayClass { name: "file", query: self.query, rays }, invalid)))
+    }
+
+    fn describe(&self) -> Result<SceneDescription, Failure> {
+        if let Some(path) = &self.scene {
+            let (description, _) = Source::new(path.clone(), self.defines.clone()).load()?;
+            return Ok(description);
+        }
+        let (mesh, warnings) = load_mesh(self.mesh.as_deref().unwrap_or("".as_ref()))?;
+        warn(&warnings);
+        let shape = Shape {
+            name: self.name(),
+            geometry: Geometry::Mesh { mesh: Arc::new(mesh), face_normals: true },
+            to_world: DAffine3::IDENTITY,
+            flip_normals: false,
+            material: MaterialIndex(0),
+            radiance: None,
+        };
+        Ok(SceneDescription {
+            shapes: vec![shape],
+            materials: vec![Material::default()],
+            ..Default::default()
+        })
+    }
+}
+
+fn save(folder: &std::path::Path, classes: &[RayClass]) -> Result<(), Failure> {
+    let told = |error| Failure::Sentence(format!("can't write rays into {}: {error}", folder.display()));
+    fs::create_dir_all(folder).map_err(told)?;
+    for class in classes {
+        fs::write(folder.join(format!("{}.rays", class.name)), encode(&class.rays)).map_err(told)?;
+    }
+    Ok(())
+}
+
+fn query(argument: &str) -> Result<Query, String> {
+    match argument {
+        "closest" => Ok(Query::Closest),
+        "any" => Ok(Query::Any),
+        _ => Err("expected `closest` or `any`".into()),
+    }
+}

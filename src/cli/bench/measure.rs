@@ -1,0 +1,152 @@
+//! Rays through a scene, timed: from the array of rays to the array of results and nothing else.
+
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+
+use crate::{
+    bvh::{Tally, Tracer, Traversal, Way},
+    compile::Scene,
+    geometry::{Hit, PrimitiveId, Ray32},
+    render::{Query, RayClass},
+    simd::LANES,
+};
+
+/// Rays that a thread takes at a time.
+const CHUNK: usize = 4096;
+
+/// Results of the rays and the best time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Timed {
+    pub(super) hits: u64,
+    /// Sum of the hits' t in the order of the rays; 0 for any-hit.
+    pub(super) t_sum: f64,
+    pub(super) best: Duration,
+}
+
+/// What a traversal did.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Counts {
+    /// Nodes that rays were tested against, summed over rays.
+    pub(super) nodes: u64,
+    /// Primitives likewise.
+    pub(super) primitives: u64,
+    /// Tests of either that were run, however many rays took part.
+    tests: u64,
+}
+
+impl Counts {
+    /// The share of lanes that took part, if each test was eight wide.
+    pub(super) fn lane_use(&self) -> f64 {
+        let lanes = self.tests * LANES as u64;
+        if lanes == 0 { 0.0 } else { (self.nodes + self.primitives) as f64 / lanes as f64 }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self {
+            nodes: self.nodes + other.nodes,
+            primitives: self.primitives + other.primitives,
+            tests: self.tests + other.tests,
+        }
+    }
+}
+
+impl Tally for Counts {
+    fn node(&mut self, rays: u32) {
+        self.nodes += u64::from(rays);
+        self.tests += 1;
+    }
+
+    fn leaf(&mut self, primitives: u32, rays: u32) {
+        self.primitives += u64::from(primitives) * u64::from(rays);
+        self.tests += u64::from(primitives);
+    }
+}
+
+/// Times the fast way.
+pub(super) fn packets(scene: &Scene, class: &RayClass, repeat: u32) -> Timed {
+    match class.query {
+        Query::Closest => closest(class, repeat, |rays, hits| scene.closest_hits(rays, hits)),
+        Query::Any => any(class, repeat, |rays, blocked| scene.occluded_stream(rays, blocked)),
+    }
+}
+
+/// Times one ray at a time.
+pub(super) fn singles(scene: &Scene, class: &RayClass, repeat: u32) -> Timed {
+    match class.query {
+        Query::Closest => closest(class, repeat, |rays, hits| {
+            let mut traversal = Traversal::new(());
+            for (ray, hit) in rays.iter().zip(hits) {
+                *hit = scene.closest_hit(&ray.ray(), &mut traversal);
+            }
+        }),
+        Query::Any => any(class, repeat, |rays, blocked| {
+            let mut traversal = Traversal::new(());
+            for (ray, blocked) in rays.iter().zip(blocked) {
+                *blocked = u8::from(scene.occluded(&ray.ray(), &mut traversal));
+            }
+        }),
+    }
+}
+
+/// Counts what the fast way does, untimed.
+pub(super) fn count_packets(scene: &Scene, class: &RayClass) -> Counts {
+    count(class, |rays, tracer| match class.query {
+        Query::Closest => scene.closest_hits_by(rays, &mut vec![Hit::MISS; rays.len()], Way::Chosen, tracer),
+        Query::Any => scene.occluded_stream_by(rays, &mut vec![0; rays.len()], Way::Chosen, tracer),
+    })
+}
+
+/// Counts what single rays do, untimed.
+pub(super) fn count_singles(scene: &Scene, class: &RayClass) -> Counts {
+    count(class, |rays, tracer| {
+        let traversal = &mut tracer.traversal;
+        for ray in rays {
+            match class.query {
+                Query::Closest => drop(scene.closest_hit(&ray.ray(), traversal)),
+                Query::Any => drop(scene.occluded(&ray.ray(), traversal)),
+            }
+        }
+    })
+}
+
+fn count(class: &RayClass, trace: impl Fn(&[Ray32], &mut Tracer<Counts>) + Sync) -> Counts {
+    let chunk = |rays: &[Ray32]| {
+        let mut tracer = Tracer::new(Counts::default());
+        trace(rays, &mut tracer);
+        tracer.traversal.tally
+    };
+    class.rays.par_chunks(CHUNK).map(chunk).reduce(Counts::default, Counts::plus)
+}
+
+fn closest(class: &RayClass, repeat: u32, trace: impl Fn(&[Ray32], &mut [Hit]) + Sync) -> Timed {
+    let (results, best) = timed(&class.rays, Hit::MISS, repeat, trace);
+    let found = results.iter().filter(|hit| hit.primitive != PrimitiveId::NONE);
+    let (hits, t_sum) = found.fold((0, 0.0), |(hits, sum), hit| (hits + 1, sum + f64::from(hit.t)));
+    Timed { hits, t_sum, best }
+}
+
+fn any(class: &RayClass, repeat: u32, trace: impl Fn(&[Ray32], &mut [u8]) + Sync) -> Timed {
+    let (results, best) = timed(&class.rays, 0, repeat, trace);
+    Timed { hits: results.iter().map(|&blocked| u64::from(blocked)).sum(), t_sum: 0.0, best }
+}
+
+/// The results, and the best time after a warm-up.
+fn timed<T: Copy + Send + Sync>(
+    rays: &[Ray32],
+    empty: T,
+    repeat: u32,
+    trace: impl Fn(&[Ray32], &mut [T]) + Sync,
+) -> (Vec<T>, Duration) {
+    let mut results = vec![empty; rays.len()];
+    let mut run = || {
+        let start = Instant::now();
+        rays.par_chunks(CHUNK)
+            .zip(results.par_chunks_mut(CHUNK))
+            .for_each(|(rays, results)| trace(rays, results));
+        start.elapsed()
+    };
+    run();
+    let best = (0..repeat).map(|_| run()).min().unwrap_or_default();
+    (results, best)
+}

@@ -1,0 +1,10 @@
+//! What the program says to the shell. `packlight --help` documents it.
+
+/// What was asked for was done.
+pub const SUCCESS: u8 = 0;
+/// A file could not be read, understood or written.
+pub const FAILURE: u8 = 1;
+/// The command line was not understood.
+pub const USAGE: u8 = 2;
+/// The processor lacks instructions that the program was compiled to use.
+pub const CPU: u8 = 3;

@@ -1,0 +1,168 @@
+//! `packlight info SCENE`: what was loaded, and what it was compiled to.
+
+use std::{fmt, time::Duration};
+
+use clap::Args;
+use serde::Serialize;
+
+use super::{
+    console,
+    failure::Failure,
+    overrides::IntegratorName,
+    quantity::{grouped, mebibytes, time},
+    source::Source,
+};
+use crate::{
+    compile::{Summary, compile},
+    scene::{Integrator, Projection, SceneDescription},
+    simd::cpu,
+};
+
+/// Arguments of `info`.
+#[derive(Clone, Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    source: Source,
+
+    /// One JSON object on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let (description, load_time) = arguments.source.load()?;
+    let summary = compile(&description)?.summary();
+    let scene = arguments.source.path.display().to_string();
+    let info = Info::new(scene, &description, summary, load_time);
+    if arguments.json { console::print_json(&info) } else { console::print(&info.to_string()) }
+}
+
+/// Field names are the keys of `--json`; units are in the names.
+#[derive(Clone, Debug, Serialize)]
+struct Info {
+    scene: String,
+    shapes: usize,
+    triangles: u64,
+    degenerate_triangles: u64,
+    quadrics: u64,
+    materials: u32,
+    lights: u32,
+    bvh_nodes: u64,
+    bvh_bytes: u64,
+    bvh_seconds: f64,
+    load_seconds: f64,
+    width: u32,
+    height: u32,
+    samples_per_pixel: u32,
+    seed: u32,
+    projection: &'static str,
+    /// Of the film's width; absent where rays are parallel.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    x_fov_degrees: Option<f64>,
+    position: [f64; 3],
+    looking: [f64; 3],
+    integrator: String,
+    max_depth: Option<u32>,
+    lanes: String,
+}
+
+impl Info {
+    fn new(scene: String, description: &SceneDescription, summary: Summary, load_time: Duration) -> Self {
+        let sensor = &description.sensor;
+        let (projection, x_fov_degrees) = match sensor.projection {
+            Projection::Perspective { x_fov } => ("perspective", Some(x_fov.to_degrees())),
+            Projection::Orthographic => ("orthographic", None),
+        };
+        Self {
+            scene,
+            shapes: description.shapes.len(),
+            triangles: summary.triangles,
+            degenerate_triangles: summary.degenerate,
+            quadrics: summary.quadrics,
+            materials: summary.materials,
+            lights: summary.lights,
+            bvh_nodes: summary.bvh_nodes,
+            bvh_bytes: summary.bvh_bytes,
+            bvh_seconds: summary.bvh_time.as_secs_f64(),
+            load_seconds: load_time.as_secs_f64(),
+            width: sensor.film.width,
+            height: sensor.film.height,
+            samples_per_pixel: sensor.sampler.sample_count,
+            seed: sensor.sampler.seed,
+            projection,
+            x_fov_degrees,
+            position: sensor.to_world.translation.to_array(),
+            looking: sensor.to_world.matrix3.z_axis.normalize_or_zero().to_array(),
+            integrator: IntegratorName::from(&description.integrator).to_string(),
+            max_depth: match description.integrator {
+                Integrator::Path { max_depth, .. } => max_depth,
+                Integrator::Whitted { max_depth } => Some(max_depth),
+                Integrator::Direct { .. } | Integrator::Aov { .. } => None,
+            },
+            lanes: cpu::compiled(),
+        }
+    }
+}
+
+impl fmt::Display for Info {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let seconds = |seconds: f64| time(Duration::from_secs_f64(seconds));
+        let vector = |[x, y, z]: [f64; 3]| format!("({x:.3}, {y:.3}, {z:.3})");
+        let sensor = match self.x_fov_degrees {
+            Some(degrees) => format!("{}, {degrees:.2} degrees across", self.projection),
+            None => self.projection.to_owned(),
+        };
+        let integrator = match self.max_depth {
+            Some(depth) => format!("{}, depth at most {depth}", self.integrator),
+            None => self.integrator.clone(),
+        };
+        let rows = [
+            ("shapes", grouped(self.shapes as u64)),
+            ("triangles", grouped(self.triangles)),
+            ("degenerate", grouped(self.degenerate_triangles)),
+            ("quadrics", grouped(self.quadrics)),
+            ("materials", grouped(self.materials.into())),
+            ("lights", grouped(self.lights.into())),
+            ("BVH", format!("{} nodes, {}", grouped(self.bvh_nodes), mebibytes(self.bvh_bytes))),
+            ("time", format!("load {}, BVH {}", seconds(self.load_seconds), seconds(self.bvh_seconds))),
+            ("film", format!("{} x {}", self.width, self.height)),
+            ("samples", format!("{} a pixel, seed {}", self.samples_per_pixel, self.seed)),
+            ("sensor", sensor),
+            ("", format!("at {}, looking along {}", vector(self.position), vector(self.looking))),
+            ("integrator", integrator),
+            ("lanes", self.lanes.clone()),
+        ];
+        writeln!(f, "{}", self.scene)?;
+        for (name, value) in rows {
+            writeln!(f, "  {name:<11} {value}")?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn info() -> Info {
+        let summary = Summary { triangles: 69_451, bvh_bytes: 3 << 20, ..Summary::default() };
+        Info::new("bunny.xml".into(), &SceneDescription::default(), summary, Duration::from_millis(5))
+    }
+
+    #[test]
+    fn the_table_holds_what_was_compiled() {
+        let text = info().to_string();
+        for part in ["69,451", "3.0 MiB", "768 x 576", "perspective, 42.31 degrees", "path", "f32x8"] {
+            assert!(text.contains(part), "{part} is not in\n{text}");
+        }
+    }
+
+    #[test]
+    fn json_names_its_units() {
+        let json = serde_json::to_value(info()).unwrap();
+        assert_eq!(json["load_seconds"], 0.005);
+        assert_eq!(json["looking"], serde_json::json!([0.0, 0.0, 1.0]));
+        assert!(json["max_depth"].is_null());
+    }
+}

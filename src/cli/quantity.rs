@@ -1,0 +1,80 @@
+//! Numbers for people.
+
+use std::time::Duration;
+
+/// `1,234,567`.
+pub(super) fn grouped(n: u64) -> String {
+    let digits = n.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// `12.345 M`.
+pub(super) fn mega(n: u64) -> String {
+    format!("{:.3} M", n as f64 * 1e-6)
+}
+
+/// `1 light`, `2 lights`.
+pub(super) fn counted(n: impl Into<u64>, noun: &str) -> String {
+    let n = n.into();
+    format!("{} {noun}{}", grouped(n), if n == 1 { "" } else { "s" })
+}
+
+/// `850 µs`, `12.5 ms`, `3.27 s`, `4 min 05 s`.
+pub(super) fn time(duration: Duration) -> String {
+    let seconds = duration.as_secs_f64();
+    match seconds {
+        s if s < 1e-3 => format!("{:.0} µs", s * 1e6),
+        s if s < 1.0 => format!("{:.1} ms", s * 1e3),
+        s if s < 60.0 => format!("{s:.2} s"),
+        _ => format!("{} min {:02} s", duration.as_secs() / 60, duration.as_secs() % 60),
+    }
+}
+
+/// `12.0 MiB`.
+pub(super) fn mebibytes(bytes: u64) -> String {
+    format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20))
+}
+
+/// Millions a second; 0 where no time passed.
+pub(super) fn mega_per_second(n: u64, time: Duration) -> f64 {
+    if time.is_zero() { 0.0 } else { n as f64 * 1e-6 / time.as_secs_f64() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thousands_are_set_apart() {
+        for (n, text) in [(0, "0"), (999, "999"), (1000, "1,000"), (1_234_567, "1,234,567")] {
+            assert_eq!(grouped(n), text);
+        }
+    }
+
+    #[test]
+    fn one_is_singular() {
+        assert_eq!(counted(1_u32, "light"), "1 light");
+        assert_eq!(counted(0_u32, "light"), "0 lights");
+    }
+
+    #[test]
+    fn times_are_read_in_their_own_unit() {
+        for (millis, text) in [(0.85, "850 µs"), (12.5, "12.5 ms"), (3270.0, "3.27 s"), (245e3, "4 min 05 s")]
+        {
+            assert_eq!(time(Duration::from_secs_f64(millis * 1e-3)), text);
+        }
+    }
+
+    #[test]
+    fn no_time_is_no_rate() {
+        assert_eq!(mega_per_second(5, Duration::ZERO), 0.0);
+        assert_eq!(mega_per_second(3_000_000, Duration::from_secs(2)), 1.5);
+    }
+}

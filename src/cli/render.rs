@@ -1,0 +1,177 @@
+//! `packlight render SCENE -o OUT`.
+
+use std::time::Instant;
+
+use clap::{Args, CommandFactory, ValueEnum, error::ErrorKind, value_parser};
+
+use super::{
+    Cli, console,
+    failure::{Failure, warn_of},
+    memory,
+    output::Output,
+    overrides::{IntegratorName, MAX_SIDE, Overrides},
+    progress::Bar,
+    report::{Report, Sources},
+    source::Source,
+    threads,
+};
+use crate::{
+    compile::compile,
+    picture::{Format, Preview, save},
+    render::{self, Settings},
+};
+
+const PICTURE: &str = "Picture";
+const MACHINE: &str = "Machine (never changes a bit of the picture)";
+
+/// Arguments of `render`.
+#[derive(Clone, Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    source: Source,
+
+    /// Picture to write: .exr (linear, all channels), .hdr (linear) or .png (8-bit sRGB)
+    #[arg(short, long, value_name = "OUT", value_parser = Output::parse)]
+    output: Output,
+
+    /// How light is transported, in place of what the scene says
+    #[arg(long, value_name = "NAME", help_heading = PICTURE)]
+    integrator: Option<IntegratorName>,
+
+    /// Samples per pixel
+    #[arg(long, value_name = "N", help_heading = PICTURE, value_parser = value_parser!(u32).range(1..))]
+    spp: Option<u32>,
+
+    /// Columns; without --height the aspect ratio is kept
+    #[arg(long, value_name = "W", help_heading = PICTURE, value_parser = side())]
+    width: Option<u32>,
+
+    /// Rows; without --width the aspect ratio is kept
+    #[arg(long, value_name = "H", help_heading = PICTURE, value_parser = side())]
+    height: Option<u32>,
+
+    /// Seed of every random decision
+    #[arg(long, value_name = "N", help_heading = PICTURE)]
+    seed: Option<u32>,
+
+    /// Stops by which a .png is brightened
+    #[arg(long, value_name = "STOPS", help_heading = PICTURE, allow_negative_numbers = true, value_parser = stops)]
+    exposure: Option<f32>,
+
+    /// Threads; one a core if not given
+    #[arg(long, value_name = "N", help_heading = MACHINE, value_parser = threads::count())]
+    threads: Option<usize>,
+
+    /// Eight rays at a time, or one at a time as a reference
+    #[arg(long, value_name = "NAME", help_heading = MACHINE, default_value = "packet")]
+    backend: Backend,
+
+    /// Shade hits as they come, not sorted by material: for measurement
+    #[arg(long, help_heading = MACHINE)]
+    no_sort: bool,
+
+    /// No progress bar and no summary
+    #[arg(short, long)]
+    quiet: bool,
+
+    /// The summary as one JSON object on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Backend {
+    Packet,
+    Scalar,
+}
+
+/// Runs the command.
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    arguments.output.check()?;
+    let report = threads::pool(arguments.threads)?.install(|| picture(arguments))?;
+
+    if let Some(warning) = report.warning() {
+        warn_of(warning);
+    }
+    if arguments.json {
+        console::print_json(&report)
+    } else if arguments.quiet {
+        Ok(())
+    } else {
+        console::print(&report.to_string())
+    }
+}
+
+/// Load, compile, render, save.
+fn picture(arguments: &Arguments) -> Result<Report, Failure> {
+    let (mut description, load_time) = arguments.source.load()?;
+    arguments.overrides().apply(&mut description);
+    arguments.can_hold(IntegratorName::from(&description.integrator))?;
+    if arguments.exposure.is_some() && arguments.output.format != Format::Png {
+        warn_of("--exposure only changes a .png; the numbers of this file stay linear");
+    }
+
+    let scene = compile(&description)?;
+    let settings = arguments.settings();
+    let bar = Bar::new(arguments.quiet);
+    let start = Instant::now();
+    let mut rendered = render::render(&scene, &settings, &|progress| bar.show(progress));
+    bar.finish();
+    if rendered.statistics.time.is_zero() {
+        rendered.statistics.time = start.elapsed();
+    }
+    let preview = Preview { exposure: arguments.exposure.unwrap_or(0.0) };
+    save(&rendered.picture, &arguments.output.path, preview)?;
+
+    Ok(Report::from(Sources {
+        scene: arguments.source.path.display().to_string(),
+        output: arguments.output.path.display().to_string(),
+        description: &description,
+        settings,
+        summary: scene.summary(),
+        statistics: rendered.statistics,
+        load_time,
+        threads: rayon::current_num_threads(),
+        peak_memory: memory::peak(),
+    }))
+}
+
+impl Arguments {
+    fn overrides(&self) -> Overrides {
+        Overrides {
+            integrator: self.integrator,
+            spp: self.spp,
+            width: self.width,
+            height: self.height,
+            seed: self.seed,
+        }
+    }
+
+    fn settings(&self) -> Settings {
+        let backend = match self.backend {
+            Backend::Packet => render::Backend::Packet,
+            Backend::Scalar => render::Backend::Scalar,
+        };
+        Settings { backend, sort: !self.no_sort }
+    }
+
+    /// Named channels fit nowhere but into an EXR.
+    fn can_hold(&self, integrator: IntegratorName) -> Result<(), Failure> {
+        if integrator != IntegratorName::Aov || self.output.format == Format::Exr {
+            return Ok(());
+        }
+        let message = "the aov integrator writes named channels, which only an .exr can hold";
+        Err(Cli::command().error(ErrorKind::ArgumentConflict, message).into())
+    }
+}
+
+fn side() -> clap::builder::RangedI64ValueParser<u32> {
+    value_parser!(u32).range(1..=i64::from(MAX_SIDE))
+}
+
+fn stops(argument: &str) -> Result<f32, String> {
+    match argument.parse::<f32>() {
+        Ok(stops) if stops.is_finite() => Ok(stops),
+        _ => Err("expected a number of stops, as in --exposure -1.5".into()),
+    }
+}

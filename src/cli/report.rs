@@ -1,0 +1,248 @@
+//! What a render took, told to people or as JSON.
+
+use std::{fmt, time::Duration};
+
+use serde::Serialize;
+
+use super::{
+    overrides::IntegratorName,
+    quantity::{counted, grouped, mebibytes, mega, mega_per_second, time},
+};
+use crate::{
+    compile::Summary,
+    render::{Backend, Settings, Statistics},
+    scene::SceneDescription,
+    simd::cpu,
+};
+
+/// A finished render. Field names are the keys of `--json`; units are in the names.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Report {
+    scene: String,
+    output: String,
+    width: u32,
+    height: u32,
+    samples_per_pixel: u32,
+    integrator: String,
+    backend: &'static str,
+    sorted: bool,
+    lanes: String,
+    threads: usize,
+    triangles: u64,
+    quadrics: u64,
+    materials: u32,
+    lights: u32,
+    load_seconds: f64,
+    bvh_seconds: f64,
+    render_seconds: f64,
+    rays: Rays,
+    mrays_per_second: f64,
+    msamples_per_second: f64,
+    lane_use: LaneUse,
+    invalid_samples: u64,
+    first_invalid: Option<Sample>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    peak_memory_bytes: Option<u64>,
+}
+
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Rays {
+    camera: u64,
+    bounce: u64,
+    shadow: u64,
+}
+
+/// In [0, 1].
+#[derive(Clone, Copy, Debug, Serialize)]
+struct LaneUse {
+    trace: f64,
+    shade: f64,
+}
+
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Sample {
+    x: u32,
+    y: u32,
+    sample: u32,
+}
+
+/// What the report is made of.
+pub(super) struct Sources<'a> {
+    pub(super) scene: String,
+    pub(super) output: String,
+    pub(super) description: &'a SceneDescription,
+    pub(super) settings: Settings,
+    pub(super) summary: Summary,
+    pub(super) statistics: Statistics,
+    pub(super) load_time: Duration,
+    pub(super) threads: usize,
+    pub(super) peak_memory: Option<u64>,
+}
+
+impl From<Sources<'_>> for Report {
+    fn from(from: Sources<'_>) -> Self {
+        let Sources { description, summary, statistics, .. } = from;
+        let rays = statistics.camera_rays + statistics.bounce_rays + statistics.shadow_rays;
+        Self {
+            scene: from.scene,
+            output: from.output,
+            width: description.sensor.film.width,
+            height: description.sensor.film.height,
+            samples_per_pixel: description.sensor.sampler.sample_count,
+            integrator: IntegratorName::from(&description.integrator).to_string(),
+            backend: match from.settings.backend {
+                Backend::Packet => "packet",
+                Backend::Scalar => "scalar",
+            },
+            sorted: from.settings.sort,
+            lanes: cpu::compiled(),
+            threads: from.threads,
+            triangles: summary.triangles,
+            quadrics: summary.quadrics,
+            materials: summary.materials,
+            lights: summary.lights,
+            load_seconds: from.load_time.as_secs_f64(),
+            bvh_seconds: summary.bvh_time.as_secs_f64(),
+            render_seconds: statistics.time.as_secs_f64(),
+            rays: Rays {
+                camera: statistics.camera_rays,
+                bounce: statistics.bounce_rays,
+                shadow: statistics.shadow_rays,
+            },
+            mrays_per_second: mega_per_second(rays, statistics.time),
+            msamples_per_second: mega_per_second(statistics.samples, statistics.time),
+            lane_use: LaneUse {
+                trace: statistics.trace_lanes.ratio(),
+                shade: statistics.shade_lanes.ratio(),
+            },
+            invalid_samples: statistics.invalid_samples,
+            first_invalid: statistics.first_invalid.map(|(x, y, sample)| Sample { x, y, sample }),
+            peak_memory_bytes: from.peak_memory,
+        }
+    }
+}
+
+impl Report {
+    /// NaN and infinite samples are kept out of the picture, but never silently.
+    pub(super) fn warning(&self) -> Option<String> {
+        let what = match self.invalid_samples {
+            0 => return None,
+            1 => "1 sample was not a finite number and was left out of the picture".to_owned(),
+            n => format!("{} samples were not finite numbers and were left out of the picture", grouped(n)),
+        };
+        Some(match self.first_invalid {
+            Some(Sample { x, y, sample }) => {
+                format!("{what}; the first is sample {sample} of pixel ({x}, {y})")
+            }
+            None => what,
+        })
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let seconds = |seconds: f64| time(Duration::from_secs_f64(seconds));
+        writeln!(f, "{} -> {}", self.scene, self.output)?;
+        writeln!(
+            f,
+            "  picture  {} x {}, {} a pixel, {}",
+            self.width,
+            self.height,
+            counted(self.samples_per_pixel, "sample"),
+            self.integrator
+        )?;
+        writeln!(
+            f,
+            "  scene    {}, {}, {}, {}",
+            counted(self.triangles, "triangle"),
+            counted(self.quadrics, "quadric"),
+            counted(self.materials, "material"),
+            counted(self.lights, "light")
+        )?;
+        writeln!(
+            f,
+            "  time     load {}, BVH {}, render {} on {}",
+            seconds(self.load_seconds),
+            seconds(self.bvh_seconds),
+            seconds(self.render_seconds),
+            counted(self.threads as u64, "thread")
+        )?;
+        let Rays { camera, bounce, shadow } = self.rays;
+        writeln!(f, "  rays     {} camera, {} bounce, {} shadow", mega(camera), mega(bounce), mega(shadow))?;
+        writeln!(
+            f,
+            "  speed    {:.2} Mrays/s, {:.2} Msamples/s",
+            self.mrays_per_second, self.msamples_per_second
+        )?;
+        let LaneUse { trace, shade } = self.lane_use;
+        match self.backend {
+            "packet" => writeln!(
+                f,
+                "  lanes    {:.1} % at work in trace, {:.1} % in shade; {}",
+                100.0 * trace,
+                100.0 * shade,
+                self.lanes
+            )?,
+            _ => writeln!(f, "  lanes    one ray at a time")?,
+        }
+        if let Some(bytes) = self.peak_memory_bytes {
+            writeln!(f, "  memory   {} at the peak", mebibytes(bytes))?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render;
+
+    fn report(statistics: Statistics) -> Report {
+        Report::from(Sources {
+            scene: "box.xml".into(),
+            output: "box.exr".into(),
+            description: &SceneDescription::default(),
+            settings: Settings::default(),
+            summary: Summary { triangles: 1234, lights: 1, ..Summary::default() },
+            statistics,
+            load_time: Duration::from_millis(12),
+            threads: 2,
+            peak_memory: None,
+        })
+    }
+
+    #[test]
+    fn rates_count_all_rays() {
+        let report = report(Statistics {
+            samples: 1_000_000,
+            camera_rays: 1_000_000,
+            bounce_rays: 2_000_000,
+            shadow_rays: 3_000_000,
+            trace_lanes: render::LaneUse { active: 6, total: 8 },
+            time: Duration::from_secs(2),
+            ..Statistics::default()
+        });
+        assert_eq!((report.mrays_per_second, report.msamples_per_second), (3.0, 0.5));
+        let text = report.to_string();
+        for part in ["1,234 triangles", "1 light\n", "3.00 Mrays/s", "75.0 % at work", "2 threads"] {
+            assert!(text.contains(part), "{part} is not in\n{text}");
+        }
+    }
+
+    #[test]
+    fn memory_is_absent_where_it_is_unknown() {
+        let json = serde_json::to_value(report(Statistics::default())).unwrap();
+        assert!(json.get("peak_memory_bytes").is_none());
+        assert_eq!(json["triangles"], 1234);
+        assert!(json["first_invalid"].is_null());
+    }
+
+    #[test]
+    fn invalid_samples_are_told_with_their_place() {
+        assert_eq!(report(Statistics::default()).warning(), None);
+        let counts =
+            Statistics { invalid_samples: 2, first_invalid: Some((3, 4, 5)), ..Statistics::default() };
+        let warning = report(counts).warning().unwrap();
+        assert!(warning.contains("2 samples") && warning.ends_with("sample 5 of pixel (3, 4)"), "{warning}");
+    }
+}

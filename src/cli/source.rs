@@ -1,0 +1,62 @@
+//! The scene that a command works on.
+
+use std::{
+    path::PathBuf,
+    time::{Duration, Instant},
+};
+
+use clap::Args;
+
+use super::failure::{Failure, warn};
+use crate::{
+    load::{LoadOptions, load},
+    scene::SceneDescription,
+};
+
+/// Arguments of every command that loads a scene.
+#[derive(Clone, Debug, Args)]
+pub(super) struct Source {
+    /// Scene file (.xml, as Mitsuba 3 reads it) a bare mesh (.obj, .ply) or one made on the
+    /// spot (gen:soup:100k, gen:terrain:1M, gen:spheres:1M, gen:hair:200k)
+    #[arg(value_name = "SCENE")]
+    pub(super) path: PathBuf,
+
+    /// Value of `$NAME` in the scene, stronger than its <default>; repeatable
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
+    defines: Vec<(String, String)>,
+}
+
+impl Source {
+    pub(super) fn new(path: PathBuf, defines: Vec<(String, String)>) -> Self {
+        Self { path, defines }
+    }
+
+    /// Loads the scene and tells its warnings.
+    pub(super) fn load(&self) -> Result<(SceneDescription, Duration), Failure> {
+        let start = Instant::now();
+        let options = LoadOptions { defines: self.defines.clone() };
+        let loaded = load(&self.path, &options)?;
+        let time = start.elapsed();
+        warn(&loaded.warnings);
+        Ok((loaded.description, time))
+    }
+}
+
+pub(super) fn definition(argument: &str) -> Result<(String, String), String> {
+    match argument.split_once('=') {
+        Some((name, value)) if !name.is_empty() => Ok((name.to_owned(), value.to_owned())),
+        _ => Err("expected NAME=VALUE, as in -D spp=64".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_equals_sign_divides() {
+        assert_eq!(definition("a=b=c"), Ok(("a".into(), "b=c".into())));
+        assert_eq!(definition("a="), Ok(("a".into(), String::new())));
+        assert!(definition("a").is_err() && definition("=b").is_err());
+    }
+}

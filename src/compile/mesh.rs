@@ -1,0 +1,138 @@
+//! Shapes made of triangles, in world space.
+
+use glam::{DAffine3, DMat3, DVec3, Vec2, Vec3, vec2};
+
+use super::surfaces::{Interpolate, Vertex};
+use crate::math::acos;
+use crate::scene::Mesh;
+
+/// Triangles of one shape.
+#[derive(Debug)]
+pub(super) struct WorldMesh {
+    pub(super) vertices: Vec<Vertex>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) uv: Interpolate,
+    pub(super) normal: Interpolate,
+}
+
+/// A loaded mesh. Without normals of its own it gets smooth ones.
+pub(super) fn world_mesh(mesh: &Mesh, to_world: &DAffine3, face_normals: bool) -> WorldMesh {
+    let positions: Vec<Vec3> =
+        mesh.positions.iter().map(|p| to_world.transform_point3(p.as_dvec3()).as_vec3()).collect();
+    let normals = if face_normals {
+        vec![Vec3::ZERO; positions.len()]
+    } else if mesh.normals.is_empty() {
+        smooth_normals(&positions, &mesh.triangles)
+    } else {
+        let to_world = normal_matrix(to_world);
+        mesh.normals.iter().map(|n| (to_world * n.as_dvec3()).normalize_or_zero().as_vec3()).collect()
+    };
+    let uv = |i: usize| mesh.uvs.get(i).copied().unwrap_or(Vec2::ZERO);
+    let vertex = |(i, (&p, n)): (usize, (&Vec3, Vec3))| Vertex::new(p, n, uv(i));
+    WorldMesh {
+        vertices: positions.iter().zip(normals).enumerate().map(vertex).collect(),
+        triangles: mesh.triangles.clone(),
+        uv: if mesh.uvs.is_empty() { Interpolate::Face } else { Interpolate::Vertices },
+        normal: if face_normals { Interpolate::Face } else { Interpolate::Vertices },
+    }
+}
+
+/// The inverse transpose: what takes normals into the world.
+pub(super) fn normal_matrix(to_world: &DAffine3) -> DMat3 {
+    to_world.matrix3.inverse().transpose()
+}
+
+/// Sums of face normals, weighted by the angle of the corner, so that how a face is cut into triangles
+/// does not matter (Thürmer & Wüthrich 1998).
+fn smooth_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+    let mut normals = vec![Vec3::ZERO; positions.len()];
+    for corners in triangles {
+        let p = corners.map(|i| positions[i as usize]);
+        let face = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
+        for k in 0..3 {
+            let (a, b) = (p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
+            let cos = a.normalize_or_zero().dot(b.normalize_or_zero());
+            normals[corners[k] as usize] += face * acos(cos);
+        }
+    }
+    normals.into_iter().map(Vec3::normalize_or_zero).collect()
+}
+
+/// A quadrilateral: centre, two half edges along which u and v grow, and the side it is seen from.
+struct Face {
+    centre: DVec3,
+    du: DVec3,
+    dv: DVec3,
+    normal: DVec3,
+}
+
+/// [-1, 1]² in xy.
+pub(super) fn rectangle(to_world: &DAffine3) -> WorldMesh {
+    faces(to_world, &[Face { centre: DVec3::ZERO, du: DVec3::X, dv: DVec3::Y, normal: DVec3::Z }])
+}
+
+/// [-1, 1]³; the directions of uv are those of the format's table.
+pub(super) fn cube(to_world: &DAffine3) -> WorldMesh {
+    let face = |normal: DVec3, du, dv| Face { centre: normal, du, dv, normal };
+    let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
+    faces(
+        to_world,
+        &[face(x, y, -z), face(-x, y, z), face(y, -x, -z), face(-y, z, x), face(z, y, x), face(-z, -y, x)],
+    )
+}
+
+fn faces(to_world: &DAffine3, faces: &[Face]) -> WorldMesh {
+    let mut mesh = WorldMesh {
+        vertices: vec![],
+        triangles: vec![],
+        uv: Interpolate::Vertices,
+        normal: Interpolate::Face,
+    };
+    let mirrored = to_world.matrix3.determinant() < 0.0;
+    for face in faces {
+        let first = mesh.vertices.len() as u32;
+        for (s, t) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)] {
+            let local = face.centre + face.du * (2.0 * s - 1.0) + face.dv * (2.0 * t - 1.0);
+            let position = to_world.transform_point3(local).as_vec3();
+            mesh.vertices.push(Vertex::new(position, Vec3::ZERO, vec2(s as f32, t as f32)));
+        }
+        // The winding makes e₁ × e₂ the normal, in the world too.
+        let agrees = (face.du.cross(face.dv).dot(face.normal) > 0.0) != mirrored;
+        let corners = if agrees { [[0, 1, 2], [0, 2, 3]] } else { [[0, 2, 1], [0, 3, 2]] };
+        mesh.triangles.extend(corners.map(|t| t.map(|i| i + first)));
+    }
+    mesh
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faces_look_outward_even_when_mirrored() {
+        for scale in [DVec3::ONE, DVec3::new(-1.0, 2.0, 1.0)] {
+            let mesh = cube(&DAffine3::from_scale(scale));
+            assert_eq!(mesh.triangles.len(), 12);
+            for t in &mesh.triangles {
+                let [a, b, c] = t.map(|i| mesh.vertices[i as usize].position);
+                assert!((b - a).cross(c - a).dot(a + b + c) > 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn smooth_normals_do_not_depend_on_the_diagonal() {
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let mut positions: Vec<Vec3> = corners.iter().map(|&(x, y)| Vec3::new(x, y, 0.0)).collect();
+        positions.push(Vec3::new(-1.0, -1.0, 2.0));
+        positions.push(Vec3::new(1.0, -1.0, 2.0));
+        let wall = [[0, 4, 5], [0, 5, 1]];
+        let floor =
+            |diagonal: [[u32; 3]; 2]| smooth_normals(&positions, &[wall.as_slice(), &diagonal].concat());
+        let (a, b) = (floor([[0, 1, 2], [0, 2, 3]]), floor([[0, 1, 3], [1, 2, 3]]));
+        for (a, b) in a.iter().zip(&b) {
+            assert!((*a - *b).length() < 1e-6, "{a} {b}");
+        }
+        assert!((a[0] - Vec3::new(0.0, 1.0, 1.0).normalize()).length() < 1e-6, "{}", a[0]);
+    }
+}

@@ -1,0 +1,271 @@
+//! What can be hit, in leaf order: eight triangles or spheres to a block, in columns.
+
+use crate::bvh::{BLOCK, Hitx8, Leaves};
+use crate::geometry::{
+    Canonical, Hit, PrimitiveId, Ray, RayLanes, Rayx8, Sphere, SphereLanes, Triangle, TriangleLanes,
+};
+use crate::simd::{Bits, Mask, Mask8, Real, Vector3, f32x8, u32x8, vector3};
+
+/// Classes of references, in the order of their blocks.
+pub(super) const TRIANGLE: u8 = 0;
+pub(super) const SPHERE: u8 = 1;
+pub(super) const CANONICAL: u8 = 2;
+
+/// Something that can be hit.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Primitive {
+    Triangle(Triangle),
+    Sphere(Sphere),
+    Canonical(Canonical),
+}
+
+/// Eight triangles: 320 bytes. Padding has no edges, so its determinant is 0 and it is never hit.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+struct TriangleBlock {
+    v0: [[f32; 8]; 3],
+    e1: [[f32; 8]; 3],
+    e2: [[f32; 8]; 3],
+    id: [u32; 8],
+}
+
+/// Eight spheres. Padding is never asked for: leaves have counts.
+#[derive(Clone, Copy, Debug)]
+struct SphereBlock {
+    center: [[f32; 8]; 3],
+    radius: [f32; 8],
+    id: [u32; 8],
+}
+
+/// All primitives of a scene, in slots as the tree assigned them.
+#[derive(Debug, Default)]
+pub struct Primitives {
+    triangles: Vec<TriangleBlock>,
+    spheres: Vec<SphereBlock>,
+    /// One a slot; `None` is padding.
+    canonicals: Vec<Option<(Canonical, u32)>>,
+}
+
+fn set(rows: &mut [[f32; 8]; 3], lane: usize, v: glam::Vec3) {
+    for axis in 0..3 {
+        rows[axis][lane] = v[axis];
+    }
+}
+
+fn row(rows: &[[f32; 8]; 3], lane: usize) -> glam::Vec3 {
+    glam::vec3(rows[0][lane], rows[1][lane], rows[2][lane])
+}
+
+impl TriangleBlock {
+    const EMPTY: Self = Self { v0: [[0.0; 8]; 3], e1: [[0.0; 8]; 3], e2: [[0.0; 8]; 3], id: [u32::MAX; 8] };
+
+    #[inline]
+    fn triangle(&self, lane: usize) -> Triangle {
+        Triangle { v0: row(&self.v0, lane), e1: row(&self.e1, lane), e2: row(&self.e2, lane) }
+    }
+}
+
+impl SphereBlock {
+    const EMPTY: Self = Self { center: [[0.0; 8]; 3], radius: [0.0; 8], id: [u32::MAX; 8] };
+}
+
+impl Primitives {
+    /// Lays the primitives out. `slots` holds indices into `primitives`, `u32::MAX` for padding, in blocks
+    /// of one class; the index is the primitive's id.
+    pub(super) fn new(slots: &[u32], primitives: impl Fn(u32) -> Primitive) -> Self {
+        let mut all = Self::default();
+        for block in slots.chunks(BLOCK) {
+            match primitives(block[0]) {
+                Primitive::Triangle(_) => all.triangles.push(TriangleBlock::EMPTY),
+                Primitive::Sphere(_) => all.spheres.push(SphereBlock::EMPTY),
+                Primitive::Canonical(_) => all.canonicals.extend([None; BLOCK]),
+            }
+            for (lane, &id) in block.iter().enumerate().filter(|&(_, &id)| id != u32::MAX) {
+                all.put(lane, id, primitives(id));
+            }
+        }
+        all
+    }
+
+    /// Puts a primitive into a lane of its class's last block.
+    fn put(&mut self, lane: usize, id: u32, primitive: Primitive) {
+        match primitive {
+            Primitive::Triangle(triangle) => {
+                if let Some(block) = self.triangles.last_mut() {
+                    set(&mut block.v0, lane, triangle.v0);
+                    set(&mut block.e1, lane, triangle.e1);
+                    set(&mut block.e2, lane, triangle.e2);
+                    block.id[lane] = id;
+                }
+            }
+            Primitive::Sphere(sphere) => {
+                if let Some(block) = self.spheres.last_mut() {
+                    set(&mut block.center, lane, sphere.center);
+                    block.radius[lane] = sphere.radius;
+                    block.id[lane] = id;
+                }
+            }
+            Primitive::Canonical(surface) => {
+                let at = self.canonicals.len() - BLOCK + lane;
+                self.canonicals[at] = Some((surface, id));
+            }
+        }
+    }
+
+    /// Bytes that tracing reads.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.triangles.as_slice())
+            + size_of_val(self.spheres.as_slice())
+            + size_of_val(self.canonicals.as_slice())
+    }
+
+    /// Tests every primitive: the answer that every tree must give.
+    pub fn brute_force(&self, ray: &Ray) -> Hit {
+        let mut hit = Hit { t: ray.t_far, ..Hit::MISS };
+        let slots = (self.triangles.len() + self.spheres.len()) * BLOCK + self.canonicals.len();
+        for first in (0..slots as u32).step_by(BLOCK) {
+            self.intersect_single::<false>(first, BLOCK as u32, ray, &mut hit);
+        }
+        if hit.primitive == PrimitiveId::NONE { Hit::MISS } else { hit }
+    }
+
+    /// A slot's block: which class, which block of the class, and the first lane.
+    #[inline]
+    fn place(&self, slot: u32) -> (u8, usize, usize) {
+        let (block, lane) = (slot as usize / BLOCK, slot as usize % BLOCK);
+        if block < self.triangles.len() {
+            return (TRIANGLE, block, lane);
+        }
+        let block = block - self.triangles.len();
+        if block < self.spheres.len() {
+            return (SPHERE, block, lane);
+        }
+        (CANONICAL, block - self.spheres.len(), lane)
+    }
+}
+
+/// Records a packet's hits with one primitive, where they are closer or tie with a higher id.
+#[inline]
+fn accept<const ANY: bool>(hit: &mut Hitx8, found: Mask8, t: f32x8, u: f32x8, v: f32x8, id: u32) {
+    if ANY {
+        hit.t = f32x8::select(found, f32x8::splat(f32::NEG_INFINITY), hit.t);
+        return;
+    }
+    let mut closer = found & t.lt(hit.t);
+    let tie = found & t.equal(hit.t);
+    if tie.any() {
+        let lower = hit.primitive.to_array().map(|other| id < other);
+        closer = closer | (tie & Mask8::from_array(lower));
+    }
+    hit.t = f32x8::select(closer, t, hit.t);
+    hit.u = f32x8::select(closer, u, hit.u);
+    hit.v = f32x8::select(closer, v, hit.v);
+    hit.primitive = u32x8::select(closer, u32x8::splat(id), hit.primitive);
+}
+
+/// Records a ray's hit in the same way.
+#[inline]
+fn accept_single<const ANY: bool>(hit: &mut Hit, (t, u, v): (f32, f32, f32), id: u32) {
+    let found = Hit { t, u, v, primitive: PrimitiveId(id) };
+    if ANY {
+        hit.t = f32::NEG_INFINITY;
+    } else if found.closer_than(hit) {
+        *hit = found;
+    }
+}
+
+impl Leaves for Primitives {
+    #[inline]
+    fn intersect_packet<const ANY: bool>(
+        &self,
+        first: u32,
+        count: u32,
+        ray: &Rayx8,
+        active: Mask8,
+        hit: &mut Hitx8,
+    ) {
+        let (class, block, lane) = self.place(first);
+        for lane in lane..lane + count as usize {
+            let limited = RayLanes { t_far: hit.t, ..*ray };
+            let zero = f32x8::zero();
+            match class {
+                TRIANGLE => {
+                    let block = &self.triangles[block];
+                    let splat = |rows| Vector3::splat(row(rows, lane));
+                    let triangle =
+                        TriangleLanes { v0: splat(&block.v0), e1: splat(&block.e1), e2: splat(&block.e2) };
+                    let (found, t, u, v) = triangle.intersect(&limited, active);
+                    if found.any() {
+                        accept::<ANY>(hit, found, t, u, v, block.id[lane]);
+                    }
+                }
+                SPHERE => {
+                    let block = &self.spheres[block];
+                    let sphere = SphereLanes {
+                        center: Vector3::splat(row(&block.center, lane)),
+                        radius: f32x8::splat(block.radius[lane]),
+                    };
+                    let (found, t) = sphere.intersect(&limited, active);
+                    accept::<ANY>(hit, found, t, zero, zero, block.id[lane]);
+                }
+                _ => {
+                    if let Some((surface, id)) = &self.canonicals[block * BLOCK + lane] {
+                        let (found, t) = surface.intersect(&limited, active);
+                        accept::<ANY>(hit, found, t, zero, zero, *id);
+                    }
+                }
+            }
+        }
+    }
+
+    #[inline]
+    fn intersect_block<const ANY: bool>(&self, first: u32, count: u32, ray: &Ray, hit: &mut Hit) {
+        let (class, block, lane) = self.place(first);
+        if class != TRIANGLE {
+            self.intersect_single::<ANY>(first, count, ray, hit);
+            return;
+        }
+        let block = &self.triangles[block];
+        let rows = |rows: &[[f32; 8]; 3]| vector3(rows[0].into(), rows[1].into(), rows[2].into());
+        let triangles = TriangleLanes { v0: rows(&block.v0), e1: rows(&block.e1), e2: rows(&block.e2) };
+        let ray = RayLanes::<f32x8> { t_far: f32x8::splat(hit.t), ..RayLanes::splat(ray) };
+        let lanes = Mask8::first(lane + count as usize) & !Mask8::first(lane);
+        let (found, t, u, v) = triangles.intersect(&ray, lanes);
+        let mut found = found.to_bitmask();
+        while found != 0 {
+            let lane = found.trailing_zeros() as usize;
+            found &= found - 1;
+            accept_single::<ANY>(hit, (t.lane(lane), u.lane(lane), v.lane(lane)), block.id[lane]);
+        }
+    }
+
+    #[inline]
+    fn intersect_single<const ANY: bool>(&self, first: u32, count: u32, ray: &Ray, hit: &mut Hit) {
+        let (class, block, lane) = self.place(first);
+        for lane in lane..lane + count as usize {
+            let limited = Ray { t_far: hit.t, ..*ray };
+            match class {
+                TRIANGLE => {
+                    let block = &self.triangles[block];
+                    if let Some(found) = block.triangle(lane).intersect(&limited) {
+                        accept_single::<ANY>(hit, found, block.id[lane]);
+                    }
+                }
+                SPHERE => {
+                    let block = &self.spheres[block];
+                    let sphere = Sphere { center: row(&block.center, lane), radius: block.radius[lane] };
+                    if let Some(t) = sphere.intersect(&limited).filter(|_| block.id[lane] != u32::MAX) {
+                        accept_single::<ANY>(hit, (t, 0.0, 0.0), block.id[lane]);
+                    }
+                }
+                _ => {
+                    if let Some((surface, id)) = &self.canonicals[block * BLOCK + lane]
+                        && let Some(t) = surface.intersect_ray(&limited)
+                    {
+                        accept_single::<ANY>(hit, (t, 0.0, 0.0), *id);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! What a renderer asks of a scene.
+
+use super::{Scene, Surface};
+use crate::bvh::{Hitx8, Stream, Tally, Tracer, Traversal, Way};
+use crate::geometry::{Hit, PrimitiveId, Ray, Rayx8};
+use crate::material::MaterialId;
+use crate::simd::{Bits, Mask8, Real, Vector3, f32x8, u32x8};
+
+impl Scene {
+    /// The nearest hits of a packet; lanes that are not active, or hit nothing, have primitive
+    /// [`PrimitiveId::NONE`] and t = +∞.
+    #[inline]
+    pub fn closest_hit_packet<T: Tally>(
+        &self,
+        ray: &Rayx8,
+        active: Mask8,
+        traversal: &mut Traversal<T>,
+    ) -> Hitx8 {
+        let none = u32x8::splat(PrimitiveId::NONE.0);
+        let mut hit = Hitx8 { t: ray.t_far, u: f32x8::zero(), v: f32x8::zero(), primitive: none };
+        self.bvh.intersect_packet::<false, _, T>(&self.primitives, ray, active, &mut hit, traversal);
+        hit.t = f32x8::select(hit.primitive.equal(none), f32x8::splat(f32::INFINITY), hit.t);
+        hit
+    }
+
+    /// The nearest hit of a ray.
+    #[inline]
+    pub fn closest_hit<T: Tally>(&self, ray: &Ray, traversal: &mut Traversal<T>) -> Hit {
+        let mut hit = Hit { t: ray.t_far, ..Hit::MISS };
+        self.bvh.intersect_single::<false, _, T>(&self.primitives, ray, &mut hit, traversal);
+        if hit.primitive == PrimitiveId::NONE { Hit::MISS } else { hit }
+    }
+
+    /// Which rays of a packet are blocked; false where not active.
+    #[inline]
+    pub fn occluded_packet<T: Tally>(
+        &self,
+        ray: &Rayx8,
+        active: Mask8,
+        traversal: &mut Traversal<T>,
+    ) -> Mask8 {
+        let mut hit = Hitx8 { t: ray.t_far, u: f32x8::zero(), v: f32x8::zero(), primitive: u32x8::default() };
+        self.bvh.intersect_packet::<true, _, T>(&self.primitives, ray, active, &mut hit, traversal);
+        active & hit.t.equal(f32x8::splat(f32::NEG_INFINITY))
+    }
+
+    /// Is a ray blocked?
+    #[inline]
+    pub fn occluded<T: Tally>(&self, ray: &Ray, traversal: &mut Traversal<T>) -> bool {
+        let mut hit = Hit { t: ray.t_far, ..Hit::MISS };
+        self.bvh.intersect_single::<true, _, T>(&self.primitives, ray, &mut hit, traversal);
+        hit.t == f32::NEG_INFINITY
+    }
+
+    /// Traces a stream of rays: nearest hits, or for `ANY` whether there is any. Every way gives the same
+    /// answers, to the bit.
+    #[inline]
+    pub fn trace<const ANY: bool, S: Stream, T: Tally>(
+        &self,
+        stream: &mut S,
+        way: Way,
+        tracer: &mut Tracer<T>,
+    ) {
+        self.bvh.intersect_stream::<ANY, _, S, T>(&self.primitives, stream, way, tracer);
+    }
+
+    /// The nearest hit of a ray by testing every primitive: what every other way must equal to the bit.
+    pub fn brute_force(&self, ray: &Ray) -> Hit {
+        self.primitives.brute_force(ray)
+    }
+
+    /// The material of a primitive.
+    #[inline]
+    pub fn material(&self, primitive: PrimitiveId) -> MaterialId {
+        self.surfaces.shape(primitive.0).material
+    }
+
+    /// The points where rays (org, dir) met their primitives at (t, u, v).
+    #[inline]
+    pub fn surface<R: Real>(
+        &self,
+        ray: (Vector3<R>, Vector3<R>),
+        tuv: (R, R, R),
+        primitive: R::Bits,
+    ) -> Surface<R> {
+        self.surfaces.at(ray, tuv, primitive)
+    }
+}

@@ -1,0 +1,176 @@
+//! Shapes to columns: primitives numbered in the order of the description.
+
+use glam::Vec3;
+
+use super::{
+    CompileError, MAX_PRIMITIVES, References, canonical,
+    mesh::{self, WorldMesh},
+    primitives::{CANONICAL, Primitive, SPHERE, TRIANGLE},
+    surfaces::{CanonicalRow, Class, ShapeRow, Surfaces},
+};
+use crate::bvh::Reference;
+use crate::geometry::{Aabb, CanonicalKind, Triangle};
+use crate::light::{AreaLight, Emitting, Light, LightId};
+use crate::material::MaterialId;
+use crate::scene::{Geometry, Shape};
+
+/// What the shapes of a description become.
+pub(super) struct Shapes {
+    pub(super) surfaces: Surfaces,
+    pub(super) references: References,
+    /// Triangles without area: they keep their numbers and are in no leaf.
+    pub(super) degenerate: u64,
+}
+
+/// Compiles the shapes, and adds the area lights to `lights`.
+pub(super) fn compile(
+    shapes: &[Shape],
+    materials: &[MaterialId],
+    lights: &mut Vec<Light>,
+) -> Result<Shapes, CompileError> {
+    let mut all = Shapes { surfaces: Surfaces::default(), references: vec![], degenerate: 0 };
+    for shape in shapes {
+        let count = all.surfaces.shape_of.len() as u64 + primitive_count(&shape.geometry);
+        if count > MAX_PRIMITIVES {
+            return Err(CompileError::TooManyPrimitives(count));
+        }
+        all.add(shape, materials[shape.material.0 as usize], lights)?;
+    }
+    Ok(all)
+}
+
+fn primitive_count(geometry: &Geometry) -> u64 {
+    match geometry {
+        Geometry::Mesh { mesh, .. } => mesh.triangles.len() as u64,
+        Geometry::Cube => 12,
+        Geometry::Rectangle => 2,
+        Geometry::Sphere { .. } | Geometry::Disk | Geometry::Cylinder { .. } => 1,
+    }
+}
+
+impl Shapes {
+    fn add(
+        &mut self,
+        shape: &Shape,
+        material: MaterialId,
+        lights: &mut Vec<Light>,
+    ) -> Result<(), CompileError> {
+        let to_world = &shape.to_world;
+        let first = self.surfaces.shape_of.len() as u32;
+        let references = self.references.len();
+        let (class, first_in_class, emitting) = match &shape.geometry {
+            Geometry::Rectangle => self.add_mesh(mesh::rectangle(to_world)),
+            Geometry::Cube => self.add_mesh(mesh::cube(to_world)),
+            Geometry::Mesh { mesh, face_normals } => {
+                self.add_mesh(mesh::world_mesh(mesh, to_world, *face_normals))
+            }
+            Geometry::Sphere { center, radius } => {
+                let row = canonical::sphere(to_world, *center, *radius);
+                self.refer(row.sphere.bounds(), SPHERE);
+                self.surfaces.spheres.push(row);
+                (Class::Sphere, self.surfaces.spheres.len() - 1, Emitting::Sphere(row.sphere))
+            }
+            Geometry::Disk => self.add_canonical(canonical::disk(to_world)),
+            Geometry::Cylinder { p0, p1, radius } => {
+                self.add_canonical(canonical::cylinder(to_world, *p0, *p1, *radius))
+            }
+        };
+        let bounds = self.references[references..].iter().fold(Aabb::EMPTY, |b, r| b.union(r.bounds));
+        // Extents are squared in areas; half the exponent range is the end of it.
+        let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+        if self.references.len() > references && !(reach.is_finite() && reach < 1e18) {
+            return Err(CompileError::OutOfRange { shape: shape.name.clone() });
+        }
+        let side = if shape.flip_normals { -1.0 } else { 1.0 };
+        let light = match shape.radiance {
+            Some(radiance) if self.references.len() > references => {
+                let extent = emitter_extent(&emitting);
+                lights.push(Light::Area(AreaLight { radiance, shape: emitting, side, extent }));
+                LightId(lights.len() as u32 - 1)
+            }
+            _ => LightId::NONE,
+        };
+        self.surfaces.shapes.push(ShapeRow {
+            first,
+            first_in_class: first_in_class as u32,
+            class,
+            material,
+            light,
+            side,
+        });
+        Ok(())
+    }
+
+    /// Numbers a primitive and, if it can be hit, hands it to the tree.
+    fn refer(&mut self, bounds: Aabb, class: u8) {
+        let index = self.number();
+        self.references.push(Reference { bounds, index, class });
+    }
+
+    fn number(&mut self) -> u32 {
+        let index = self.surfaces.shape_of.len() as u32;
+        self.surfaces.shape_of.push(self.surfaces.shapes.len() as u32);
+        index
+    }
+
+    fn add_mesh(&mut self, mesh: WorldMesh) -> (Class, usize, Emitting) {
+        let WorldMesh { vertices, triangles, uv, normal } = mesh;
+        let first = self.surfaces.triangles.len();
+        let base = self.surfaces.vertices.len() as u32;
+        let mut emitting = Vec::new();
+        for corners in &triangles {
+            let [v0, v1, v2] = corners.map(|i| vertices[i as usize].position);
+            let triangle = Triangle::new(v0, v1, v2);
+            if triangle.e1.cross(triangle.e2) == Vec3::ZERO {
+                // Its determinant would be noise: a hit where there is nothing.
+                self.number();
+                self.degenerate += 1;
+            } else {
+                self.refer(triangle.bounds(), TRIANGLE);
+                emitting.push(triangle);
+            }
+        }
+        self.surfaces.triangles.extend(triangles.iter().map(|t| t.map(|i| i + base)));
+        self.surfaces.vertices.extend(vertices);
+        (Class::Triangles { uv, normal }, first, Emitting::triangles(emitting))
+    }
+
+    fn add_canonical(&mut self, row: CanonicalRow) -> (Class, usize, Emitting) {
+        self.refer(row.surface.bounds, CANONICAL);
+        let [x, y, z] = row.axes;
+        let area = match row.surface.kind {
+            CanonicalKind::Disk => std::f32::consts::PI * x.cross(y).length(),
+            CanonicalKind::Cylinder => std::f32::consts::TAU * x.length() * z.length(),
+        };
+        let emitting =
+            Emitting::Canonical { kind: row.surface.kind, axes: row.axes, origin: row.origin, area };
+        self.surfaces.canonicals.push(row);
+        (Class::Canonical, self.surfaces.canonicals.len() - 1, emitting)
+    }
+}
+
+fn emitter_extent(emitting: &Emitting) -> Vec3 {
+    match emitting {
+        Emitting::Sphere(sphere) => Vec3::splat(sphere.radius),
+        Emitting::Triangles { triangles, .. } => {
+            triangles.iter().fold(Vec3::ZERO, |extent, t| extent.max(t.e1.abs() + t.e2.abs()))
+        }
+        Emitting::Canonical { axes, .. } => axes.iter().fold(Vec3::ZERO, |sum, axis| sum + axis.abs()),
+    }
+}
+
+impl Surfaces {
+    /// What the kernels need of a primitive.
+    pub(super) fn primitive(&self, id: u32) -> Primitive {
+        let shape = self.shape(id);
+        let index = (id - shape.first + shape.first_in_class) as usize;
+        match shape.class {
+            Class::Triangles { .. } => {
+                let [v0, v1, v2] = self.triangles[index].map(|i| self.vertices[i as usize].position);
+                Primitive::Triangle(Triangle::new(v0, v1, v2))
+            }
+            Class::Sphere => Primitive::Sphere(self.spheres[index].sphere),
+            Class::Canonical => Primitive::Canonical(self.canonicals[index].surface),
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! Ray against disk and cylinder: canonical surfaces under an affine map.
+//!
+//! The ray is taken to the surface's own space, where t is the same: o' = M org + m, d' = M dir.
+//! The **disk** is x² + y² ≤ 1, z = 0: t = −o'_z / d'_z. The **cylinder** is x² + y² = 1, 0 ≤ z ≤ 1,
+//! without caps, hit from both sides: the roots of the quadratic in xy, nearest first.
+
+use glam::{Affine3A, Vec3};
+
+use super::{Aabb, Ray, RayLanes, aabb};
+use crate::simd::{Mask, Real, Vector3, vector3};
+
+/// Which surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CanonicalKind {
+    /// x² + y² ≤ 1, z = 0.
+    Disk,
+    /// x² + y² = 1, 0 ≤ z ≤ 1.
+    Cylinder,
+}
+
+/// A disk or a cylinder in the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Canonical {
+    /// Which surface.
+    pub kind: CanonicalKind,
+    /// Rows of the linear part of world → canonical.
+    pub rows: [Vec3; 3],
+    /// Its translation.
+    pub offset: Vec3,
+    /// The box that decides hits, world space.
+    pub bounds: Aabb,
+}
+
+impl Canonical {
+    /// From the map world → canonical and the surface's world-space box.
+    pub fn new(kind: CanonicalKind, to_canonical: Affine3A, bounds: Aabb) -> Self {
+        let m = to_canonical.matrix3;
+        let rows = [m.row(0), m.row(1), m.row(2)].map(Vec3::from);
+        Self { kind, rows, offset: to_canonical.translation.into(), bounds }
+    }
+
+    /// A world point in canonical space.
+    #[inline]
+    pub fn to_canonical<R: Real>(&self, p: Vector3<R>) -> Vector3<R> {
+        self.to_canonical_direction(p) + Vector3::splat(self.offset)
+    }
+
+    /// A world direction in canonical space.
+    #[inline]
+    pub fn to_canonical_direction<R: Real>(&self, d: Vector3<R>) -> Vector3<R> {
+        let row = |i: usize| Vector3::splat(self.rows[i]).dot(d);
+        vector3(row(0), row(1), row(2))
+    }
+
+    /// One ray or eight: (hit, t) of the lanes in `active`.
+    #[inline]
+    pub fn intersect<R: Real>(&self, ray: &RayLanes<R>, active: R::Mask) -> (R::Mask, R) {
+        let (o, d) = (self.to_canonical(ray.org), self.to_canonical_direction(ray.dir));
+        let bounds = (Vector3::splat(self.bounds.min), Vector3::splat(self.bounds.max));
+        let all = (R::splat(f32::NEG_INFINITY), R::splat(f32::INFINITY));
+        let (low, high) = aabb::interval(bounds, (ray.org, ray.rdir), all);
+        let active = active & low.le(high);
+        let in_range = |t: R| ray.t_near.lt(t) & t.le(ray.t_far);
+        let clamp = |t: R| high.min(low.max(t));
+        match self.kind {
+            CanonicalKind::Disk => {
+                let t = -o.z / d.z;
+                let (x, y) = (o.x + t * d.x, o.y + t * d.y);
+                let inside = (x * x + y * y).le(R::one());
+                let t = clamp(t);
+                (inside & active & in_range(t), t)
+            }
+            CanonicalKind::Cylinder => {
+                let a = d.x * d.x + d.y * d.y;
+                let b = -(o.x * d.x + o.y * d.y);
+                let (nx, ny) = (o.x + d.x * (b / a), o.y + d.y * (b / a));
+                let discriminant = R::one() - (nx * nx + ny * ny);
+                let touches = discriminant.ge(R::zero()) & active;
+                let root = (a * discriminant).sqrt();
+                let q = R::select(b.lt(R::zero()), b - root, b + root);
+                let (t0, t1) = ((o.x * o.x + o.y * o.y - R::one()) / q, q / a);
+                let hit = |t: R| {
+                    let z = o.z + t * d.z;
+                    let clamped = clamp(t);
+                    (z.ge(R::zero()) & z.le(R::one()) & in_range(clamped), clamped)
+                };
+                let ((near, first), (far, second)) = (hit(t0.min(t1)), hit(t0.max(t1)));
+                (touches & (near | far), R::select(near, first, second))
+            }
+        }
+    }
+
+    /// One ray: the nearest t in the ray's range.
+    #[inline]
+    pub fn intersect_ray(&self, ray: &Ray) -> Option<f32> {
+        let (hit, t) = self.intersect::<f32>(&RayLanes::splat(ray), true);
+        hit.any().then_some(t)
+    }
+}
+
+#[cfg(test)]
+mod tests;

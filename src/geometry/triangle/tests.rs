@@ -1,0 +1,215 @@
+use glam::DVec3;
+
+use super::*;
+use crate::geometry::{
+    Rayx8,
+    seeds::{Kernel, Random, at_random, in_every_lane, nan_misses, with_ends},
+};
+use crate::simd::{Mask8, f32x8};
+
+impl Kernel for Triangle {
+    fn bounds(&self) -> Aabb {
+        self.bounds()
+    }
+
+    fn scalar(&self, ray: &Ray) -> Option<[f32; 3]> {
+        self.intersect(ray).map(|(t, u, v)| [t, u, v])
+    }
+
+    fn lanes(surfaces: &[Self; 8], rays: &Rayx8, active: Mask8) -> Option<(Mask8, [f32x8; 3])> {
+        let triangles = TriangleLanes {
+            v0: Vector3::from_fn(|i| surfaces[i].v0),
+            e1: Vector3::from_fn(|i| surfaces[i].e1),
+            e2: Vector3::from_fn(|i| surfaces[i].e2),
+        };
+        let (hit, t, u, v) = triangles.intersect(rays, active);
+        Some((hit, [t, u, v]))
+    }
+}
+
+const UNIT: Triangle = Triangle { v0: Vec3::ZERO, e1: Vec3::X, e2: Vec3::Y };
+
+fn ray(org: [f32; 3], dir: [f32; 3]) -> Ray {
+    Ray::new(org.into(), dir.into(), 0.0, f32::INFINITY)
+}
+
+/// The unit triangle from above: middle, edges, vertices, outside, and the rest of what goes wrong.
+fn seeds() -> Vec<(Ray, Triangle)> {
+    let down = |x: f32, y: f32| ray([x, y, 1.0], [0.0, 0.0, -1.0]);
+    let mut rays = vec![
+        down(0.25, 0.25),
+        down(0.5, 0.0),
+        down(0.0, 0.5),
+        down(0.5, 0.5),
+        down(0.3, 0.7),
+        down(0.0, 0.0),
+        down(1.0, 0.0),
+        down(0.0, 1.0),
+        down(-0.0, -0.0),
+        down(1.1, 0.1),
+        down(-0.1, 0.5),
+        down(0.5, -1e-30),
+        down(0.5_f32.next_up(), 0.5),
+        // From below, behind, on the plane, skew, along the plane, in it.
+        ray([0.25, 0.25, -1.0], [0.0, 0.0, 1.0]),
+        ray([0.25, 0.25, 1.0], [0.0, 0.0, 1.0]),
+        ray([0.25, 0.25, 0.0], [0.0, 0.0, 1.0]),
+        ray([0.25, 0.25, -0.0], [0.0, 0.0, -1.0]),
+        ray([-1.0, -2.0, 3.0], [1.2, 2.2, -3.0]),
+        ray([-1.0, 0.25, 1.0], [1.0, 0.0, 0.0]),
+        ray([-1.0, 0.25, 0.0], [1.0, 0.0, 0.0]),
+        ray([-1.0, 0.0, 0.0], [1.0, -0.0, 0.0]),
+        ray([-1.0, 0.25, 0.0], [1.0, -0.0, 1e-38]),
+        // Signed zeros, and directions of other lengths.
+        ray([0.25, 0.25, 1.0], [-0.0, -0.0, -1.0]),
+        ray([0.25, -0.0, 1.0], [0.0, -0.0, -1e-20]),
+        ray([0.25, 0.25, 1.0], [0.0, 0.0, -1e20]),
+        ray([0.25, 0.25, 1e15], [0.0, 0.0, -1.0]),
+        ray([0.25, 0.25, 1e-30], [0.0, 0.0, -1.0]),
+        ray([0.25, 0.25, 1.0], [0.0, 0.0, 0.0]),
+    ];
+    rays.extend([
+        Ray::new(Vec3::new(0.25, 0.25, 1.0), -Vec3::Z, 0.0, 0.5),
+        Ray::new(Vec3::new(0.25, 0.25, 1.0), -Vec3::Z, 2.0, 5.0),
+        Ray::new(Vec3::new(0.25, 0.25, 1.0), Vec3::Z, -2.0, 5.0),
+        Ray::new(Vec3::new(0.25, 0.25, 1.0), -Vec3::Z, 3.0, 1.0),
+    ]);
+    let mut triangles = vec![
+        UNIT,
+        Triangle { v0: Vec3::ZERO, e1: Vec3::Y, e2: Vec3::X },
+        // Not in an axis plane, and without area: a line, a point, nearly a line.
+        Triangle::new(Vec3::new(0.1, 0.0, 0.2), Vec3::new(0.9, 0.1, -0.3), Vec3::new(0.2, 0.8, 0.4)),
+        Triangle { v0: Vec3::ZERO, e1: Vec3::X, e2: Vec3::X },
+        Triangle { v0: Vec3::new(0.25, 0.25, 0.0), e1: Vec3::ZERO, e2: Vec3::ZERO },
+        Triangle { v0: Vec3::ZERO, e1: Vec3::ONE, e2: Vec3::new(1.0, 1.0, 1.000_000_1) },
+    ];
+    for scale in [1e-30, 1e-12, 1e12, 1e15] {
+        triangles.push(Triangle { v0: UNIT.v0, e1: UNIT.e1 * scale, e2: UNIT.e2 * scale });
+    }
+    let mut seeds: Vec<_> = triangles.iter().flat_map(|&t| rays.iter().map(move |&ray| (ray, t))).collect();
+    for scale in [1e-30, 1e-12, 1e12, 1e15] {
+        let triangle = Triangle { v0: UNIT.v0, e1: UNIT.e1 * scale, e2: UNIT.e2 * scale };
+        seeds.extend(rays.iter().map(|ray| {
+            (Ray::new(ray.org * scale, ray.dir, ray.t_near * scale, ray.t_far * scale), triangle)
+        }));
+    }
+    seeds
+}
+
+#[test]
+fn lanes_equal_scalar_on_seeds() {
+    in_every_lane(&with_ends(&seeds()));
+}
+
+#[test]
+fn lanes_equal_scalar_at_random() {
+    at_random(200_000, |random| {
+        let triangle = Triangle::new(random.vector(), random.vector(), random.vector());
+        let target = triangle.v0 + triangle.e1 * random.signed() + triangle.e2 * random.signed();
+        let org = random.vector() * 4.0;
+        (Ray::new(org, target - org, 0.0, f32::INFINITY), triangle)
+    });
+}
+
+#[test]
+fn lanes_equal_scalar_on_a_grid() {
+    at_random(200_000, |random| {
+        let triangle = Triangle::new(random.grid(), random.grid(), random.grid());
+        let t_far = [f32::INFINITY, 1.0, 2.0, 0.5][random.below(4) as usize];
+        let t_near = [0.0, -0.0, 1.0, -2.0][random.below(4) as usize];
+        (Ray::new(random.grid(), random.grid_direction(), t_near, t_far), triangle)
+    });
+}
+
+#[test]
+fn the_middle_edges_and_vertices_are_hit_and_no_more() {
+    let down = |x: f32, y: f32| UNIT.intersect(&ray([x, y, 1.0], [0.0, 0.0, -1.0]));
+    for (x, y) in [(0.25, 0.25), (0.5, 0.0), (0.0, 0.5), (0.5, 0.5), (0.0, 0.0), (1.0, 0.0), (0.0, 1.0)] {
+        assert_eq!(down(x, y), Some((1.0, x, y)));
+    }
+    for (x, y) in [(-1e-30, 0.5), (0.5, -1e-30), (0.500_001, 0.5), (1.0_f32.next_up(), 0.0), (2.0, 2.0)] {
+        assert_eq!(down(x, y), None, "{x} {y}");
+    }
+}
+
+#[test]
+fn small_and_large_triangles_are_hit() {
+    for exponent in -11..=11 {
+        let scale = 10f32.powi(exponent);
+        let triangle = Triangle { v0: UNIT.v0, e1: UNIT.e1 * scale, e2: UNIT.e2 * scale };
+        let org = Vec3::new(0.25, 0.25, 2.0) * scale;
+        let (t, u, v) = triangle.intersect(&Ray::new(org, -Vec3::Z, 0.0, f32::INFINITY)).expect("a hit");
+        assert!((t / scale - 2.0).abs() < 1e-6 && (u - 0.25).abs() < 1e-6 && (v - 0.25).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn triangles_without_area_and_parallel_rays_miss() {
+    for triangle in [
+        Triangle { v0: Vec3::ZERO, e1: Vec3::ZERO, e2: Vec3::ZERO },
+        Triangle { v0: Vec3::ZERO, e1: Vec3::X, e2: Vec3::X },
+        Triangle { v0: Vec3::ZERO, e1: Vec3::X, e2: Vec3::X * -2.0 },
+        Triangle { v0: Vec3::ZERO, e1: Vec3::ZERO, e2: Vec3::Y },
+    ] {
+        for org in [Vec3::Z, Vec3::new(0.5, 0.0, 1.0), Vec3::new(0.0, -1.0, 0.0)] {
+            assert_eq!(triangle.intersect(&Ray::new(org, -Vec3::Z, 0.0, f32::INFINITY)), None);
+            assert_eq!(triangle.intersect(&Ray::new(org, Vec3::Y - Vec3::Z, 0.0, f32::INFINITY)), None);
+        }
+    }
+    assert_eq!(UNIT.intersect(&ray([-1.0, 0.25, 0.0], [1.0, 0.0, 0.0])), None);
+}
+
+#[test]
+fn nan_is_a_miss() {
+    nan_misses(ray([0.25, 0.25, 1.0], [0.0, 0.0, -1.0]), UNIT);
+    let flat = Triangle { e1: Vec3::new(f32::NAN, 0.0, 0.0), ..UNIT };
+    assert_eq!(flat.intersect(&ray([0.25, 0.25, 1.0], [0.0, 0.0, -1.0])), None);
+}
+
+/// Cramer's rule in double precision.
+fn exact(ray: &Ray, triangle: &Triangle) -> (f64, f64, f64, f64) {
+    let [org, dir, v0, e1, e2] =
+        [ray.org, ray.dir, triangle.v0, triangle.e1, triangle.e2].map(Vec3::as_dvec3);
+    let normal: DVec3 = e1.cross(e2);
+    let det = -dir.dot(normal);
+    let (s, c) = (org - v0, (org - v0).cross(dir));
+    (det, s.dot(normal) / det, e2.dot(c) / det, -e1.dot(c) / det)
+}
+
+#[test]
+fn hits_are_those_of_double_precision() {
+    let mut random = Random::new(3);
+    let (mut hits, mut misses) = (0, 0);
+    for _ in 0..200_000 {
+        let triangle = Triangle::new(random.vector(), random.vector(), random.vector());
+        let target = triangle.v0 + triangle.e1 * random.signed() + triangle.e2 * random.signed();
+        let org = random.vector() * 4.0;
+        let ray = Ray::new(org, target - org, 0.0, f32::INFINITY);
+        let (det, t, u, v) = exact(&ray, &triangle);
+        // What rounding may do to Cramer's quotients.
+        let [s, d, e1, e2] =
+            [org - triangle.v0, ray.dir, triangle.e1, triangle.e2].map(|v| f64::from(v.length()));
+        let bound = 1e-6 * s / det.abs();
+        let bounds = [bound * e1 * e2, bound * d * e2, bound * d * e1];
+        let doubt = bounds[0].max(bounds[1]).max(bounds[2]);
+        if doubt > 1e-2 {
+            continue;
+        }
+        let margin = u.min(v).min(1.0 - u - v).min(t);
+        let got = triangle.intersect(&ray);
+        if margin > 2.0 * doubt {
+            let got = got.expect("a hit by a margin");
+            for ((got, want), bound) in [(got.0, t), (got.1, u), (got.2, v)].into_iter().zip(bounds) {
+                assert!((f64::from(got) - want).abs() < bound, "{got} {want} {ray:?} {triangle:?}");
+            }
+            let on = triangle.v0 + triangle.e1 * got.1 + triangle.e2 * got.2;
+            let apart = f64::from((ray.org + ray.dir * got.0 - on).length());
+            assert!(apart < bounds[0] * d + bounds[1] * e1 + bounds[2] * e2, "{ray:?} {triangle:?}");
+            hits += 1;
+        } else if margin < -2.0 * doubt {
+            assert_eq!(got, None, "a miss by a margin: {ray:?} {triangle:?}");
+            misses += 1;
+        }
+    }
+    assert!(hits > 10_000 && misses > 10_000, "{hits} {misses}");
+}

@@ -1,0 +1,219 @@
+//! Shapes that emit.
+//!
+//! The same radiance in all directions, on the side of the normal. A sphere is sampled by the cone it is
+//! seen in (density 1/(2π(1 − cos θ_max))), everything else uniformly by area; seen from distance d under
+//! the angle θ' at the light, a density 1/A per area is d²/(A cos θ') per solid angle.
+
+use std::f32::consts::PI;
+
+use glam::Vec3;
+
+use super::LightSample;
+use crate::geometry::{CanonicalKind, Sphere, Triangle, offset_origin};
+use crate::math::{Frame, sin_cos_turns, warp};
+use crate::simd::{Mask, Real, Vector3, vector3};
+
+/// A shape with an emission.
+#[derive(Clone, Debug)]
+pub struct AreaLight {
+    /// W/(m² sr).
+    pub radiance: Vec3,
+    /// Where it comes from.
+    pub shape: Emitting,
+    /// +1 if the shape's own normal is the side that emits, −1 if it is the other.
+    pub side: f32,
+    /// Size of the surface around any of its points, for [`offset_origin`].
+    pub extent: Vec3,
+}
+
+/// The geometry of an emitter.
+#[derive(Clone, Debug)]
+pub enum Emitting {
+    /// A sphere, its own normal outward.
+    Sphere(Sphere),
+    /// Triangles, with the running sum of their areas.
+    Triangles {
+        /// Normal e₁ × e₂.
+        triangles: Vec<Triangle>,
+        /// `sums[i]` is the area of triangles 0..=i.
+        sums: Vec<f32>,
+    },
+    /// A disk or a cylinder: the image of the canonical one.
+    Canonical {
+        /// Which.
+        kind: CanonicalKind,
+        /// Images of the canonical axes; orthogonal, x and y of one length.
+        axes: [Vec3; 3],
+        /// Image of the canonical origin.
+        origin: Vec3,
+        /// Its area.
+        area: f32,
+    },
+}
+
+/// A point on a light, as a ray found it.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfacePoint<R> {
+    /// World space.
+    pub position: Vector3<R>,
+    /// Geometric normal of the shape, world space, unit length.
+    pub n_g: Vector3<R>,
+}
+
+impl Emitting {
+    /// Triangles, degenerate ones included: they are never drawn.
+    pub fn triangles(triangles: Vec<Triangle>) -> Self {
+        let mut sum = 0.0;
+        let area = |t: &Triangle| 0.5 * t.e1.cross(t.e2).length();
+        let sums = triangles
+            .iter()
+            .map(|t| {
+                sum += area(t);
+                sum
+            })
+            .collect();
+        Self::Triangles { triangles, sums }
+    }
+
+    fn area(&self) -> f32 {
+        match self {
+            Self::Sphere(sphere) => 4.0 * PI * sphere.radius * sphere.radius,
+            Self::Triangles { sums, .. } => sums.last().copied().unwrap_or(0.0),
+            Self::Canonical { area, .. } => *area,
+        }
+    }
+
+    /// A point and its normal, uniform by area.
+    #[inline]
+    fn sample_area<R: Real>(&self, (u, v): (R, R)) -> (Vector3<R>, Vector3<R>) {
+        match self {
+            Self::Sphere(sphere) => {
+                let n = warp::sphere(u, v);
+                (Vector3::splat(sphere.center) + n.scale(R::splat(sphere.radius)), n)
+            }
+            Self::Triangles { triangles, sums } => {
+                let total = sums.last().copied().unwrap_or(0.0);
+                let mut picked = [(0usize, 0.0f32); 8];
+                for (lane, pick) in picked[..R::LANES].iter_mut().enumerate() {
+                    let target = u.lane(lane) * total;
+                    let i = sums.partition_point(|&sum| sum <= target).min(sums.len() - 1);
+                    let below = if i == 0 { 0.0 } else { sums[i - 1] };
+                    // What is left of u within its triangle is a new uniform number.
+                    *pick = (i, ((target - below) / (sums[i] - below)).clamp(0.0, 1.0));
+                }
+                let (b, c) = warp::triangle(R::from_fn(|lane| picked[lane].1), v);
+                let v0 = Vector3::from_fn(|lane| triangles[picked[lane].0].v0);
+                let e1 = Vector3::from_fn(|lane| triangles[picked[lane].0].e1);
+                let e2 = Vector3::from_fn(|lane| triangles[picked[lane].0].e2);
+                (
+                    v0 + e1.scale(b) + e2.scale(c),
+                    e1.cross(e2).normalize_or(vector3(R::zero(), R::zero(), R::one())),
+                )
+            }
+            Self::Canonical { kind, axes, origin, .. } => {
+                let [x, y, z] = axes.map(Vector3::<R>::splat);
+                let origin = Vector3::splat(*origin);
+                match kind {
+                    CanonicalKind::Disk => {
+                        let (a, b) = warp::disk(u, v);
+                        (origin + x.scale(a) + y.scale(b), x.cross(y).normalize())
+                    }
+                    CanonicalKind::Cylinder => {
+                        let (sin, cos) = sin_cos_turns(u);
+                        let around = x.scale(cos) + y.scale(sin);
+                        (origin + around + z.scale(v), around.normalize())
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl AreaLight {
+    /// Draws a point of the light as seen from `from`.
+    #[inline]
+    pub fn sample<R: Real>(&self, from: Vector3<R>, u: (R, R)) -> LightSample<R> {
+        let by_cone = match &self.shape {
+            Emitting::Sphere(sphere) => Some(sample_cone(sphere, from, u)),
+            _ => None,
+        };
+        let (mut position, mut n_g) = self.shape.sample_area(u);
+        let mut cone_pdf = R::zero();
+        let mut outside = R::Mask::splat(false);
+        if let Some(cone) = by_cone {
+            outside = cone.outside;
+            position = Vector3::select(outside, cone.position, position);
+            n_g = Vector3::select(outside, cone.n_g, n_g);
+            cone_pdf = cone.pdf;
+        }
+        let to = position - from;
+        let squared = to.dot(to);
+        let wi = to.scale(R::one() / squared.sqrt());
+        let cos = -wi.dot(n_g) * R::splat(self.side);
+        let pdf = R::select(outside, cone_pdf, squared / (cos * R::splat(self.shape.area())));
+        let valid = cos.gt(R::zero()) & pdf.gt(R::zero()) & pdf.lt(R::splat(f32::INFINITY));
+        LightSample {
+            wi,
+            target: offset_origin(position, Vector3::splat(self.extent), n_g, -wi),
+            at_infinity: false,
+            weight: Vector3::splat(self.radiance).scale(R::one() / pdf),
+            pdf,
+            valid,
+        }
+    }
+
+    /// Density per solid angle with which `sample` from `from` draws the direction of `point`.
+    #[inline]
+    pub fn pdf<R: Real>(&self, from: Vector3<R>, point: &SurfacePoint<R>) -> R {
+        let to = point.position - from;
+        let squared = to.dot(to);
+        let cos = (to.dot(point.n_g) / squared.sqrt()).abs();
+        let by_area = squared / (cos * R::splat(self.shape.area()));
+        match &self.shape {
+            Emitting::Sphere(sphere) => {
+                let (outside, one_minus_cos_max) = seen_from(sphere, from);
+                R::select(outside, warp::cone_pdf(one_minus_cos_max), by_area)
+            }
+            _ => by_area,
+        }
+    }
+}
+
+struct Cone<R: Real> {
+    outside: R::Mask,
+    position: Vector3<R>,
+    n_g: Vector3<R>,
+    pdf: R,
+}
+
+/// (is the point outside, 1 − cos θ_max). The cosine itself would lose a small sphere's bits.
+#[inline]
+fn seen_from<R: Real>(sphere: &Sphere, from: Vector3<R>) -> (R::Mask, R) {
+    let to = Vector3::splat(sphere.center) - from;
+    let sin2 = R::splat(sphere.radius * sphere.radius) / to.dot(to);
+    let outside = sin2.lt(R::one());
+    let cos = (R::one() - sin2).max(R::zero()).sqrt();
+    (outside, sin2 / (R::one() + cos))
+}
+
+/// A direction within the cone that the sphere fills, and where it meets the near side.
+#[inline]
+fn sample_cone<R: Real>(sphere: &Sphere, from: Vector3<R>, (u, v): (R, R)) -> Cone<R> {
+    let (outside, one_minus_cos_max) = seen_from(sphere, from);
+    let to = Vector3::splat(sphere.center) - from;
+    let distance = to.length();
+    let radius = R::splat(sphere.radius);
+    let local = warp::cone(u, v, one_minus_cos_max);
+    let sin2 = local.x * local.x + local.y * local.y;
+    // Along the ray: distance·cos θ − √(r² − distance² sin²θ); at the rim the root may round below 0.
+    let reach = distance * local.z - (radius * radius - distance * distance * sin2).max(R::zero()).sqrt();
+    let axis = to.scale(R::one() / distance);
+    let dir = Frame::around(axis).to_world(local);
+    let n_g = (from + dir.scale(reach) - Vector3::splat(sphere.center)).normalize_or(-axis);
+    Cone {
+        outside,
+        position: Vector3::splat(sphere.center) + n_g.scale(radius),
+        n_g,
+        pdf: warp::cone_pdf(one_minus_cos_max),
+    }
+}

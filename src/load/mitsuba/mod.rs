@@ -1,0 +1,173 @@
+//! Scenes in the XML format of Mitsuba 3.
+//!
+//! ```text
+//! file ──reader──▶ Document: objects with properties ──builders──▶ SceneDescription
+//! ```
+//!
+//! The reader knows the structure (elements, `$parameters`, `include`, `ref`) and no plugin; there is
+//! one builder a class of plugins. A builder asks an [`Object`] for each property that it knows, then
+//! finishes it: whatever nobody asked for is an error, so that a misspelt name can't pass silently.
+
+mod attributes;
+mod bsdf;
+mod colour;
+mod document;
+mod emitter;
+mod files;
+mod integrator;
+mod parameters;
+mod presets;
+mod properties;
+mod reader;
+mod sensor;
+mod shape;
+mod source;
+mod texture;
+mod transform;
+mod vocabulary;
+mod xml;
+
+use std::{collections::HashMap, path::Path};
+
+use files::Files;
+use properties::Object;
+use vocabulary::Class;
+
+use super::{LoadError, Loaded};
+use crate::scene::{Emitter, Integrator, Material, MaterialIndex, Rgb, SceneDescription, Texture};
+
+/// Reads a scene; `defines` are stronger than `<default>`.
+pub(super) fn read_scene(path: &Path, defines: &[(String, String)]) -> Result<Loaded, LoadError> {
+    let document = reader::read(path, defines)?;
+    let mut builder = Builder::default();
+    builder.scene(Object::root(&document))?;
+    Ok(Loaded { description: builder.description, warnings: builder.files.warnings })
+}
+
+#[derive(Default)]
+struct Builder {
+    description: SceneDescription,
+    files: Files,
+    materials: Materials,
+}
+
+impl Builder {
+    fn scene(&mut self, scene: Object) -> Result<(), LoadError> {
+        self.sensor(scene)?;
+        match scene.child(Class::Integrator)? {
+            Some(integrator) => self.description.integrator = integrator::build(integrator, &mut self.files)?,
+            None => {
+                let warning =
+                    scene.warning("no integrator is given: `path` without a limit of depth is used");
+                self.files.warnings.push(warning);
+            }
+        }
+        for shape in scene.children(Class::Shape) {
+            let shape = shape::build(shape, &mut self.files, |files, bsdf, shines| match bsdf {
+                Some(bsdf) => self.materials.index_of(bsdf, files),
+                None => Ok(self.materials.default(shines)),
+            })?;
+            self.description.shapes.push(shape);
+        }
+        // An `area` emitter that shapes refer to may be defined here without shining here.
+        let is_definition = |emitter: &Object| emitter.plugin() == "area" && emitter.is_referenced();
+        for object in scene.children(Class::Emitter).into_iter().filter(|emitter| !is_definition(emitter)) {
+            let emitter = emitter::build(object)?;
+            let is_constant = |emitter: &Emitter| matches!(emitter, Emitter::Constant { .. });
+            if is_constant(&emitter) && self.description.emitters.iter().any(is_constant) {
+                return Err(object.error("a scene has one environment, not several").label("the second one"));
+            }
+            self.description.emitters.push(emitter);
+        }
+        self.definitions(scene)?;
+        scene.accept_referenced();
+        scene.finish()?;
+        self.description.materials = std::mem::take(&mut self.materials.list);
+        self.warn_of_darkness(scene);
+        Ok(())
+    }
+
+    fn sensor(&mut self, scene: Object) -> Result<(), LoadError> {
+        let sensors = scene.children(Class::Sensor);
+        let Some((&first, others)) = sensors.split_first() else {
+            return Err(scene.error("the scene has no sensor").label("nothing to look through").help(
+                "write <sensor type=\"perspective\"> with a `fov`, a `to_world` with a `lookat`, a `sampler` \
+                 and a `film`",
+            ));
+        };
+        self.description.sensor = sensor::build(first, &mut self.files)?;
+        for other in others {
+            self.files.warnings.push(other.warning("the first sensor is used, this one is not"));
+        }
+        Ok(())
+    }
+
+    /// Objects that stand in the scene for others to refer to; they are checked even if none does.
+    fn definitions(&mut self, scene: Object) -> Result<(), LoadError> {
+        let bsdfs = scene.children(Class::Bsdf);
+        let textures = scene.children(Class::Texture);
+        for &bsdf in &bsdfs {
+            bsdf::build(bsdf, &mut self.files)?;
+        }
+        for &texture in &textures {
+            texture::build(texture, &mut self.files)?;
+        }
+        for object in bsdfs.iter().chain(&textures).filter(|object| !object.is_referenced()) {
+            let name = object.id().map_or("without an id".into(), |id| format!("`{id}`"));
+            let warning = object.warning(format!("the {} {name} is never used", object.class()));
+            self.files.warnings.push(warning);
+        }
+        Ok(())
+    }
+
+    fn warn_of_darkness(&mut self, scene: Object) {
+        let SceneDescription { integrator, shapes, emitters, .. } = &self.description;
+        let dark = emitters.is_empty() && shapes.iter().all(|shape| shape.radiance.is_none());
+        if dark && !matches!(integrator, Integrator::Aov { .. }) {
+            self.files.warnings.push(scene.warning("nothing in the scene shines: the picture will be black"));
+        }
+    }
+}
+
+/// The materials so far; objects that several shapes refer to are built once.
+#[derive(Default)]
+struct Materials {
+    list: Vec<Material>,
+    places: HashMap<Origin, MaterialIndex>,
+}
+
+#[derive(PartialEq, Eq, Hash)]
+enum Origin {
+    /// Place in the document.
+    Object(usize),
+    /// No BSDF was given; on a shape that shines, or on one that does not.
+    Default { shines: bool },
+}
+
+impl Materials {
+    fn index_of(&mut self, bsdf: Object, files: &mut Files) -> Result<MaterialIndex, LoadError> {
+        let origin = Origin::Object(bsdf.index);
+        match self.places.get(&origin) {
+            Some(&place) => Ok(place),
+            None => Ok(self.add(origin, bsdf::build(bsdf, files)?)),
+        }
+    }
+
+    fn default(&mut self, shines: bool) -> MaterialIndex {
+        let origin = Origin::Default { shines };
+        match self.places.get(&origin) {
+            Some(&place) => place,
+            None => {
+                let reflectance = Texture::Constant(Rgb::splat(if shines { 0.0 } else { 0.5 }));
+                self.add(origin, Material::Diffuse { reflectance })
+            }
+        }
+    }
+
+    fn add(&mut self, origin: Origin, material: Material) -> MaterialIndex {
+        let place = MaterialIndex(self.list.len() as u32);
+        self.list.push(material);
+        self.places.insert(origin, place);
+        place
+    }
+}

@@ -1,0 +1,65 @@
+//! Files read, and places in them.
+
+use std::{
+    fs,
+    ops::Range,
+    path::{Path, PathBuf},
+    rc::Rc,
+};
+
+use crate::load::{LoadError, Warning, error};
+
+/// A text file in memory.
+#[derive(Debug)]
+pub(super) struct Source {
+    path: PathBuf,
+    pub(super) text: String,
+}
+
+impl Source {
+    pub(super) fn read(path: &Path) -> Result<Rc<Self>, LoadError> {
+        let bytes = fs::read(path).map_err(|e| LoadError::new(path, format!("can't be read: {e}")))?;
+        let text = String::from_utf8(bytes).map_err(|e| {
+            LoadError::new(
+                path,
+                format!("is not UTF-8 text: byte {} is invalid", e.utf8_error().valid_up_to()),
+            )
+            .help("save the file as UTF-8")
+        })?;
+        Ok(Rc::new(Self { path: path.to_owned(), text }))
+    }
+
+    /// An error that underlines a range of bytes.
+    pub(super) fn range_error(&self, range: Range<usize>, message: impl Into<String>) -> LoadError {
+        LoadError::at(&self.path, &self.text, range, message)
+    }
+
+    pub(super) fn span(self: &Rc<Self>, range: Range<usize>) -> Span {
+        Span { source: Rc::clone(self), range }
+    }
+}
+
+/// A piece of a text file, to point at.
+#[derive(Clone, Debug)]
+pub(super) struct Span {
+    source: Rc<Source>,
+    range: Range<usize>,
+}
+
+impl Span {
+    /// An error that underlines this piece.
+    pub(super) fn error(&self, message: impl Into<String>) -> LoadError {
+        self.source.range_error(self.range.clone(), message)
+    }
+
+    /// A warning about this piece.
+    pub(super) fn warning(&self, message: impl Into<String>) -> Warning {
+        let place = error::place(&self.source.path, &self.source.text, self.range.start);
+        Warning { place, message: message.into() }
+    }
+
+    /// A file name as this piece's file means it: relative to that file's folder.
+    pub(super) fn resolve(&self, file_name: &str) -> PathBuf {
+        self.source.path.parent().unwrap_or(Path::new("")).join(file_name)
+    }
+}

@@ -1,0 +1,191 @@
+//! OpenEXR, both ways: all channels out, `R G B` in.
+
+use std::io::Cursor;
+
+use exr::prelude::{
+    AnyChannel, AnyChannels, Blocks, Compression, Encoding, Error, FlatSamples, Image, Layer,
+    LayerAttributes, LineOrder, MetaData, ReadChannels, ReadLayers, Text, Vec2, WritableImage, read,
+};
+
+use super::{Channel, Picture, limits};
+
+/// The first bytes of every OpenEXR file.
+pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+
+/// All channels as 32-bit floats, ZIP-compressed scan lines in blocks of 16.
+///
+/// The blocks are compressed one after the other and nothing dates the file: the same picture gives
+/// the same bytes.
+pub(super) fn encode(picture: &Picture) -> Result<Vec<u8>, String> {
+    let mut channels = Vec::with_capacity(picture.channels.len());
+    for channel in &picture.channels {
+        let name = Text::new_or_none(&channel.name)
+            .filter(|_| !channel.name.is_empty())
+            .ok_or_else(|| format!("`{}` is no name for a channel of an EXR file", channel.name))?;
+        channels.push(AnyChannel::new(name, FlatSamples::F32(channel.samples.clone())));
+    }
+    let layer = Layer::new(
+        Vec2(picture.width as usize, picture.height as usize),
+        LayerAttributes::default(),
+        Encoding {
+            compression: Compression::ZIP16,
+            blocks: Blocks::ScanLines,
+            line_order: LineOrder::Increasing,
+        },
+        AnyChannels::sort(channels.into()),
+    );
+    let mut file = Cursor::new(Vec::new());
+    Image::from_layer(layer).write().non_parallel().to_buffered(&mut file).map_err(|e| e.to_string())?;
+    Ok(file.into_inner())
+}
+
+/// `R G B`, or `Y` three times, of the first layer that has them.
+pub(super) fn decode(bytes: &[u8]) -> Result<Picture, String> {
+    check_header(bytes)?;
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .all_layers()
+        .all_attributes()
+        .from_buffered(Cursor::new(bytes))
+        .map_err(|error| explain(&error))?;
+    for layer in &image.layer_data {
+        let plane = |name: &str| {
+            let channel = layer.channel_data.list.iter().find(|channel| channel.name.eq(name))?;
+            let full_size = channel.sampling == Vec2(1, 1);
+            full_size.then(|| channel.sample_data.values_as_f32().collect::<Vec<f32>>())
+        };
+        let colours = match (plane("R"), plane("G"), plane("B")) {
+            (Some(r), Some(g), Some(b)) => Some([r, g, b]),
+            _ => plane("Y").map(|y| [y.clone(), y.clone(), y]),
+        };
+        if let Some(planes) = colours {
+            let channels = ["R", "G", "B"].into_iter().zip(planes);
+            return Ok(Picture {
+                width: layer.size.width() as u32,
+                height: layer.size.height() as u32,
+                channels: channels.map(|(name, samples)| Channel { name: name.into(), samples }).collect(),
+            });
+        }
+    }
+    let names: Vec<String> = image
+        .layer_data
+        .iter()
+        .flat_map(|layer| &layer.channel_data.list)
+        .map(|channel| channel.name.to_string())
+        .collect();
+    Err(format!("expected the channels R, G, B (or Y) at full size, found {}", names.join(", ")))
+}
+
+fn explain(error: &Error) -> String {
+    match error {
+        Error::NotSupported(what) => {
+            format!(
+                "EXR feature not supported ({what}); store the file again with ZIP, PIZ or RLE compression"
+            )
+        }
+        _ => format!("damaged EXR file ({error})"),
+    }
+}
+
+/// Refuses what can't be read before memory is taken for it.
+fn check_header(bytes: &[u8]) -> Result<(), String> {
+    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|error| explain(&error))?;
+    for header in &meta.headers {
+        let size = header.layer_size;
+        limits::check(size.width() as u64, size.height() as u64, header.channels.list.len() as u64)?;
+        if header.deep {
+            return Err("deep EXR files are not supported; flatten the file first".into());
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn picture(names: &[&str]) -> Picture {
+        let samples = |k: usize| (0..35).map(|i| (i * i) as f32 * 0.37 - k as f32).collect();
+        let channels =
+            names.iter().enumerate().map(|(k, &name)| Channel { name: name.into(), samples: samples(k) });
+        Picture { width: 7, height: 5, channels: channels.collect() }
+    }
+
+    #[test]
+    fn colours_survive_to_the_bit() {
+        let mut original = picture(&["R", "G", "B"]);
+        original.channels[0].samples[3] = f32::INFINITY;
+        original.channels[1].samples[4] = -0.0;
+        let back = decode(&encode(&original).unwrap()).unwrap();
+        assert_eq!(back, original);
+        assert!(back.channels[1].samples[4].is_sign_negative());
+    }
+
+    #[test]
+    fn the_same_picture_gives_the_same_bytes() {
+        let picture = picture(&["R", "G", "B", "dd.T", "nn.X", "nn.Y", "nn.Z"]);
+        assert_eq!(encode(&picture).unwrap(), encode(&picture).unwrap());
+    }
+
+    #[test]
+    fn channels_are_sorted_and_keep_their_names_and_values() {
+        let original = picture(&["nn.X", "dd.T", "R", "uv.U"]);
+        let bytes = encode(&original).unwrap();
+        let image = read()
+            .no_deep_data()
+            .largest_resolution_level()
+            .all_channels()
+            .first_valid_layer()
+            .all_attributes()
+            .from_buffered(Cursor::new(bytes))
+            .unwrap();
+        let list = &image.layer_data.channel_data.list;
+        assert_eq!(
+            list.iter().map(|c| c.name.to_string()).collect::<Vec<_>>(),
+            ["R", "dd.T", "nn.X", "uv.U"]
+        );
+        assert_eq!(list[2].sample_data, FlatSamples::F32(original.channels[0].samples.clone()));
+    }
+
+    #[test]
+    fn a_grey_file_is_repeated_and_one_without_colours_is_named() {
+        let grey = decode(&encode(&picture(&["Y"])).unwrap()).unwrap();
+        assert_eq!(grey.channels[0].samples, grey.channels[2].samples);
+        let error = decode(&encode(&picture(&["dd.T"])).unwrap()).unwrap_err();
+        assert!(error.contains("found dd.T"), "{error}");
+    }
+
+    #[test]
+    fn every_truncation_is_an_error() {
+        let bytes = encode(&picture(&["R", "G", "B"])).unwrap();
+        for length in 0..bytes.len() - 1 {
+            assert!(decode(&bytes[..length]).is_err(), "{length} of {}", bytes.len());
+        }
+    }
+
+    #[test]
+    fn an_unknown_compression_is_named() {
+        let mut bytes = encode(&picture(&["R", "G", "B"])).unwrap();
+        let name = b"compression\0compression\0";
+        let at = bytes.windows(name.len()).position(|window| window == name).unwrap() + name.len() + 4;
+        for compression in [10, 11, 200] {
+            bytes[at] = compression;
+            let error = decode(&bytes).unwrap_err();
+            assert!(error.contains("EXR"), "{error}");
+        }
+    }
+
+    #[test]
+    fn sizes_are_refused_by_the_header_alone() {
+        let mut bytes = encode(&picture(&["R", "G", "B"])).unwrap();
+        for name in [&b"dataWindow\0box2i\0"[..], b"displayWindow\0box2i\0"] {
+            let at = bytes.windows(name.len()).position(|w| w == name).unwrap() + name.len() + 4;
+            bytes[at + 8..at + 12].copy_from_slice(&1_000_000_i32.to_le_bytes());
+            bytes[at + 12..at + 16].copy_from_slice(&1_000_000_i32.to_le_bytes());
+        }
+        let error = decode(&bytes).unwrap_err();
+        assert!(error.contains("1000001 × 1000001"), "{error}");
+    }
+}

@@ -1,0 +1,91 @@
+//! What an integrator is to the two pipelines.
+//!
+//! An integrator says what one vertex of a path does: what it adds to the picture, which shadow rays it
+//! asks for, and which rays go on. It says so once, for any number of lanes; the wavefront calls it with
+//! eight and the reference with one. It never sees a queue, a tile or a thread.
+
+use super::vertex::Vertex;
+use crate::compile::Scene;
+use crate::math::Sampler;
+use crate::simd::{Real, Vector3};
+
+/// Paths in lanes, as they arrive at a vertex or leave the scene.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Path<R: Real> {
+    /// Throughput: what radiance along the ray is worth to the pixel.
+    pub(super) beta: Vector3<R>,
+    /// Density per solid angle with which the ray was drawn; +∞ from the camera and from mirrors.
+    pub(super) pdf: R,
+    /// Product of the squared ratios of refraction so far, which Russian roulette takes out of `beta`.
+    pub(super) eta2: R,
+    /// [`PathKey`](crate::math::PathKey)s.
+    pub(super) key: R::Bits,
+    /// Vertices before this one; the same for all paths of a round.
+    pub(super) depth: u32,
+    /// Sample of the pixel; the same for all paths of a round.
+    pub(super) sample: u32,
+}
+
+impl<R: Real> Path<R> {
+    /// A path that starts at the camera.
+    pub(super) fn start(key: R::Bits, sample: u32) -> Self {
+        let (one, infinite) = (R::one(), R::splat(f32::INFINITY));
+        Self { beta: Vector3 { x: one, y: one, z: one }, pdf: infinite, eta2: one, key, depth: 0, sample }
+    }
+
+    /// Random numbers: the `index`-th of at most `count` pairs that the integrator uses at a vertex.
+    #[inline]
+    pub(super) fn random(&self, count: u32, index: u32) -> (R, R) {
+        // Pair 0 is the position in the pixel.
+        Sampler::<R>::new(self.key, self.sample).pair(1 + self.depth * count + index)
+    }
+}
+
+/// Where a vertex puts what it has to say. `lanes` of a call that are false say nothing.
+pub(super) trait Outgoing<R: Real> {
+    /// The vertex adds `value` to a channel of the pixel. At most once a channel.
+    fn add(&mut self, channel: usize, value: R);
+
+    /// The vertex adds `radiance` if nothing is between `org` and `org + dir·t_far`. `index` numbers the
+    /// shadow rays of a vertex from 0.
+    fn shadow(
+        &mut self,
+        index: usize,
+        lanes: R::Mask,
+        ray: (Vector3<R>, Vector3<R>, R),
+        radiance: Vector3<R>,
+    );
+
+    /// The path goes on along a ray. `index` numbers the branches from 0.
+    fn next(&mut self, index: usize, lanes: R::Mask, ray: (Vector3<R>, Vector3<R>), path: &Path<R>);
+}
+
+/// Adds a colour to the channels R, G and B.
+#[inline]
+pub(super) fn add_rgb<R: Real>(out: &mut impl Outgoing<R>, color: Vector3<R>) {
+    out.add(0, color.x);
+    out.add(1, color.y);
+    out.add(2, color.z);
+}
+
+/// How light is transported, vertex by vertex.
+pub(super) trait Integrator: Sync {
+    /// Names of the picture's channels.
+    fn channels(&self) -> Vec<String> {
+        ["R", "G", "B"].map(String::from).to_vec()
+    }
+
+    /// Shadow rays of a vertex, at most.
+    fn shadow_rays(&self, scene: &Scene) -> usize;
+
+    /// Rays that go on from a vertex, at most.
+    fn branches(&self) -> usize {
+        1
+    }
+
+    /// Rays that leave the scene along `dir`.
+    fn miss<R: Real>(&self, scene: &Scene, path: &Path<R>, dir: Vector3<R>, out: &mut impl Outgoing<R>);
+
+    /// Rays that have hit something.
+    fn shade<R: Real>(&self, scene: &Scene, vertex: &Vertex<R>, out: &mut impl Outgoing<R>);
+}

@@ -1,0 +1,63 @@
+//! The rendering equation \[Kaj86\], by paths from the eye.
+//!
+//! Each vertex adds what it emits, samples one light (picked uniformly) and draws the next ray from the
+//! BSDF; a light that is found both ways is weighted by the power heuristic \[VG95\]. Russian roulette goes
+//! by the throughput without the squared index of refraction that glass puts into it.
+
+use super::integrator::{Integrator, Outgoing, Path, add_rgb};
+use super::vertex::{Vertex, environment};
+use crate::compile::Scene;
+use crate::simd::{Real, Vector3};
+
+/// Pairs of random numbers at a vertex: light, direction, lobe and roulette.
+const PAIRS: u32 = 3;
+/// A path never survives with more certainty than this.
+const MAX_SURVIVAL: f32 = 0.95;
+
+/// Global illumination.
+pub(super) struct PathTracer {
+    /// Vertices counted from the eye; [`u32::MAX`] is no limit.
+    pub(super) max_depth: u32,
+    /// Roulette begins after this many.
+    pub(super) rr_depth: u32,
+    /// Emitters seen directly are left out.
+    pub(super) hide_emitters: bool,
+}
+
+impl Integrator for PathTracer {
+    fn shadow_rays(&self, _: &Scene) -> usize {
+        1
+    }
+
+    fn miss<R: Real>(&self, scene: &Scene, path: &Path<R>, _: Vector3<R>, out: &mut impl Outgoing<R>) {
+        if path.depth > 0 || !self.hide_emitters {
+            add_rgb(out, environment(scene, path, pick(scene)));
+        }
+    }
+
+    fn shade<R: Real>(&self, scene: &Scene, vertex: &Vertex<R>, out: &mut impl Outgoing<R>) {
+        let path = &vertex.path;
+        if path.depth > 0 || !self.hide_emitters {
+            add_rgb(out, vertex.emitted(scene, pick(scene)));
+        }
+        if path.depth + 1 >= self.max_depth {
+            return;
+        }
+        if let Some(c) = vertex.connect_one(scene, path.random(PAIRS, 0)) {
+            out.shadow(0, c.lanes, c.ray, c.radiance);
+        }
+        let (lobe, roulette) = path.random(PAIRS, 2);
+        let (mut lanes, ray, mut next) = vertex.scatter(lobe, path.random(PAIRS, 1));
+        if next.depth >= self.rr_depth {
+            let survival = (next.beta.max_element() * next.eta2).min(R::splat(MAX_SURVIVAL));
+            lanes = lanes & roulette.lt(survival);
+            next.beta = next.beta.scale(R::one() / survival);
+        }
+        out.next(0, lanes, ray, &next);
+    }
+}
+
+/// Probability of each light.
+fn pick(scene: &Scene) -> f32 {
+    1.0 / scene.lights.len().max(1) as f32
+}

@@ -1,0 +1,120 @@
+//! The same integrators, one ray at a time, from the scalar functions: the picture that every other way
+//! of rendering must equal to the bit.
+//!
+//! Nothing here is sorted, queued or eight wide. A sample is a list of rays that grows as it is worked
+//! off, first in, first out, which is the order of a wavefront's rounds.
+
+use std::collections::VecDeque;
+
+use super::camera_rays;
+use super::integrator::{Integrator, Outgoing, Path};
+use super::statistics::Statistics;
+use super::vertex::Vertex;
+use crate::bvh::Traversal;
+use crate::compile::Scene;
+use crate::film::{Tile, TileFilm};
+use crate::geometry::{PrimitiveId, Ray};
+use crate::simd::Vector3;
+
+/// A ray, and what it is worth.
+type Flight = (Ray, Path<f32>);
+/// (org, dir, `t_far`).
+type Segment = (Vector3<f32>, Vector3<f32>, f32);
+
+/// Renders all samples of a tile.
+pub(super) fn render<I: Integrator>(
+    scene: &Scene,
+    integrator: &I,
+    tile: &Tile,
+    statistics: &mut Statistics,
+    sample_done: impl Fn(),
+) -> TileFilm {
+    let channels = integrator.channels().len();
+    let mut film = TileFilm::new(tile.len(), channels);
+    let mut traversal = Traversal::new(());
+    for sample in 0..scene.sampler.sample_count {
+        for pixel in 0..tile.len() as u32 {
+            let (x, y) = (tile.x + pixel % tile.width, tile.y + pixel / tile.width);
+            let path = Path::start(camera_rays::keys::<f32>(scene, x, y), sample);
+            let ray = camera_rays::rays::<f32>(scene, x, y, &path).lane(0);
+            let mut sums = vec![0.0; channels];
+            let mut flights = VecDeque::from([(ray, path)]);
+            while let Some(flight) = flights.pop_front() {
+                let said = vertex(scene, integrator, &flight, channels, &mut traversal, statistics);
+                flights.extend(said.next.into_iter().flatten());
+                for (c, sum) in sums.iter_mut().enumerate() {
+                    let mut value = said.added[c];
+                    for (segment, radiance) in &said.shadows {
+                        value +=
+                            if segment.is_some() { [radiance.x, radiance.y, radiance.z][c] } else { 0.0 };
+                    }
+                    *sum += value;
+                }
+            }
+            film.add(pixel as usize, sample, |c| sums[c]);
+        }
+        statistics.samples += tile.len() as u64;
+        sample_done();
+    }
+    film
+}
+
+/// What a vertex has said: shadow rays by index, `None` where there is none or it is blocked.
+struct Said {
+    added: Vec<f32>,
+    shadows: Vec<(Option<Segment>, Vector3<f32>)>,
+    next: [Option<Flight>; 2],
+}
+
+impl Outgoing<f32> for Said {
+    fn add(&mut self, channel: usize, value: f32) {
+        self.added[channel] = value;
+    }
+
+    fn shadow(&mut self, index: usize, there: bool, segment: Segment, radiance: Vector3<f32>) {
+        self.shadows[index] = (there.then_some(segment), radiance);
+    }
+
+    fn next(
+        &mut self,
+        index: usize,
+        there: bool,
+        (org, dir): (Vector3<f32>, Vector3<f32>),
+        path: &Path<f32>,
+    ) {
+        let ray = Ray::new(org.into(), dir.into(), 0.0, f32::INFINITY);
+        self.next[index] = there.then_some((ray, *path));
+    }
+}
+
+fn vertex<I: Integrator>(
+    scene: &Scene,
+    integrator: &I,
+    (ray, path): &Flight,
+    channels: usize,
+    traversal: &mut Traversal,
+    statistics: &mut Statistics,
+) -> Said {
+    let rays = if path.depth == 0 { &mut statistics.camera_rays } else { &mut statistics.bounce_rays };
+    *rays += 1;
+    let shadows = vec![(None, Vector3::zero()); integrator.shadow_rays(scene)];
+    let mut said = Said { added: vec![0.0; channels], shadows, next: [None; 2] };
+    let hit = scene.closest_hit(ray, traversal);
+    if hit.primitive == PrimitiveId::NONE {
+        integrator.miss(scene, path, ray.dir.into(), &mut said);
+        return said;
+    }
+    let material = scene.material(hit.primitive);
+    let line = (ray.org.into(), ray.dir.into());
+    let vertex = Vertex::new(scene, *path, line, (hit.t, hit.u, hit.v), hit.primitive.0, material);
+    integrator.shade(scene, &vertex, &mut said);
+    for (segment, _) in &mut said.shadows {
+        if let Some((org, dir, t_far)) = *segment {
+            statistics.shadow_rays += 1;
+            if scene.occluded(&Ray::new(org.into(), dir.into(), 0.0, t_far), traversal) {
+                *segment = None;
+            }
+        }
+    }
+    said
+}

@@ -1,0 +1,286 @@
+//! A vertex of a path: a surface, its material there, and the three things that light does at it.
+
+use super::integrator::Path;
+use crate::compile::{Scene, Surface};
+use crate::geometry::{REACH, offset_origin};
+use crate::light::{Light, LightId, SurfacePoint, power_heuristic};
+use crate::material::{Branch, Bsdf, MaterialId, Sample};
+use crate::simd::{Bits, Mask, Real, Vector3, vector3};
+
+/// Points where paths have arrived, all of one material.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Vertex<R: Real> {
+    pub(super) path: Path<R>,
+    /// Origin of the ray that arrived.
+    pub(super) from: Vector3<R>,
+    /// Its parameter.
+    pub(super) t: R,
+    pub(super) surface: Surface<R>,
+    /// Towards the viewer, shading frame.
+    wo: Vector3<R>,
+    front: Bsdf<R>,
+    /// A second model for the other side.
+    back: Option<Bsdf<R>>,
+    /// −1 where a two-sided material is seen from behind: z is turned round in the shading frame.
+    side: R,
+}
+
+/// A path that goes on: in which lanes, along which ray (org, dir), and what it is worth.
+pub(super) type Continuation<R> = (<R as Real>::Mask, (Vector3<R>, Vector3<R>), Path<R>);
+
+/// Light from one emitter, to be added if it is not blocked.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Connection<R: Real> {
+    pub(super) lanes: R::Mask,
+    /// (org, dir, t_far).
+    pub(super) ray: (Vector3<R>, Vector3<R>, R),
+    pub(super) radiance: Vector3<R>,
+}
+
+impl<R: Real> Vertex<R> {
+    /// The vertices where rays (org, dir) met `primitive` at (t, u, v).
+    #[inline]
+    pub(super) fn new(
+        scene: &Scene,
+        path: Path<R>,
+        (org, dir): (Vector3<R>, Vector3<R>),
+        (t, u, v): (R, R, R),
+        primitive: R::Bits,
+        material: MaterialId,
+    ) -> Self {
+        let surface = scene.surface((org, dir), (t, u, v), primitive);
+        let row = scene.materials.row(material);
+        let wo = surface.frame.to_local(-dir);
+        let front = row.front.fetch(&scene.textures, surface.uv);
+        let (back, side) = match &row.back {
+            None => (None, R::one()),
+            Some(back) => {
+                let other = (*back != row.front).then(|| back.fetch(&scene.textures, surface.uv));
+                (other, R::select(wo.z.lt(R::zero()), -R::one(), R::one()))
+            }
+        };
+        let wo = vector3(wo.x, wo.y, wo.z * side);
+        Self { path, from: org, t, surface, wo, front, back, side }
+    }
+
+    /// Does the material reflect anything but delta lobes?
+    #[inline]
+    fn is_smooth(&self) -> bool {
+        self.front.is_smooth() || self.back.is_some_and(|back| back.is_smooth())
+    }
+
+    #[inline]
+    fn local(&self, w: Vector3<R>) -> Vector3<R> {
+        let w = self.surface.frame.to_local(w);
+        vector3(w.x, w.y, w.z * self.side)
+    }
+
+    #[inline]
+    fn world(&self, w: Vector3<R>) -> Vector3<R> {
+        self.surface.frame.to_world(vector3(w.x, w.y, w.z * self.side))
+    }
+
+    /// `front` and `back` of a function of the model, each on its side.
+    #[inline]
+    fn by_side<T>(&self, f: impl Fn(&Bsdf<R>) -> T, select: impl Fn(R::Mask, T, T) -> T) -> T {
+        let front = f(&self.front);
+        match &self.back {
+            None => front,
+            Some(back) => select(self.side.lt(R::zero()), f(back), front),
+        }
+    }
+
+    /// f |cos θ_i| for a world direction, and the density with which it is sampled.
+    #[inline]
+    fn eval(&self, wi: Vector3<R>) -> (Vector3<R>, R) {
+        let wi = self.local(wi);
+        self.by_side(
+            |bsdf| (bsdf.eval(self.wo, wi), bsdf.pdf(self.wo, wi)),
+            |mask, a, b| (Vector3::select(mask, a.0, b.0), R::select(mask, a.1, b.1)),
+        )
+    }
+
+    /// The ray from the surface along a world direction.
+    #[inline]
+    fn leave(&self, dir: Vector3<R>) -> (Vector3<R>, Vector3<R>) {
+        let surface = &self.surface;
+        (offset_origin(surface.position, surface.extent, surface.n_g, dir), dir)
+    }
+
+    /// A BSDF sample as the ray that goes on: (lanes, ray, path).
+    #[inline]
+    pub(super) fn scatter(&self, lobe: R, u: (R, R)) -> Continuation<R> {
+        let sample = self.by_side(
+            |bsdf| bsdf.sample(self.wo, lobe, u),
+            |mask, a, b| Sample {
+                wi: Vector3::select(mask, a.wi, b.wi),
+                weight: Vector3::select(mask, a.weight, b.weight),
+                pdf: R::select(mask, a.pdf, b.pdf),
+                eta: R::select(mask, a.eta, b.eta),
+                delta: (mask & a.delta) | (!mask & b.delta),
+                valid: (mask & a.valid) | (!mask & b.valid),
+            },
+        );
+        let beta = self.path.beta * sample.weight;
+        let path = Path {
+            beta,
+            pdf: R::select(sample.delta, R::splat(f32::INFINITY), sample.pdf),
+            eta2: self.path.eta2 * sample.eta * sample.eta,
+            depth: self.path.depth + 1,
+            ..self.path
+        };
+        let lanes = sample.valid & beta.max_element().gt(R::zero());
+        (lanes, self.leave(self.world(sample.wi)), path)
+    }
+
+    /// The delta lobes as rays that go on: reflection, refraction.
+    #[inline]
+    pub(super) fn branches(&self) -> [Continuation<R>; 2] {
+        let branches = self.by_side(
+            |bsdf| bsdf.branches(self.wo),
+            |mask, a, b| {
+                std::array::from_fn(|i| Branch {
+                    wi: Vector3::select(mask, a[i].wi, b[i].wi),
+                    weight: Vector3::select(mask, a[i].weight, b[i].weight),
+                    valid: (mask & a[i].valid) | (!mask & b[i].valid),
+                })
+            },
+        );
+        branches.map(|branch| {
+            let beta = self.path.beta * branch.weight;
+            let lanes = branch.valid & beta.max_element().gt(R::zero());
+            let path = Path { beta, depth: self.path.depth + 1, ..self.path };
+            (lanes, self.leave(self.world(branch.wi)), path)
+        })
+    }
+
+    /// Light that the surface itself sends along the ray, times `beta`. Where the ray was drawn with a
+    /// density, it is weighted against light sampling, which picks a light with probability `pick`.
+    #[inline]
+    pub(super) fn emitted(&self, scene: &Scene, pick: f32) -> Vector3<R> {
+        let mut total = Vector3::zero();
+        for (light, lanes) in distinct::<R>(self.surface.light) {
+            let Some(Light::Area(area)) = scene.lights.get(light as usize) else {
+                continue;
+            };
+            // `wo` has been turned to the side seen; the emitting side is the surface's own.
+            let lanes = lanes & (self.wo.z * self.side).gt(R::zero());
+            let point = SurfacePoint { position: self.surface.position, n_g: self.surface.n_g };
+            let light_pdf = area.pdf(self.from, &point) * R::splat(pick);
+            let weight = mis_weight(self.path.pdf, light_pdf);
+            total = total + (self.path.beta * Vector3::splat(area.radiance)).scale(weight).only(lanes);
+        }
+        total
+    }
+
+    /// Light from one emitter, with the probability that it was picked. `mis` weighs it against BSDF
+    /// sampling.
+    #[inline]
+    pub(super) fn connect(&self, light: &Light, pick: f32, mis: bool, u: (R, R)) -> Connection<R> {
+        let sample = light.sample(self.surface.position, u);
+        let (f, bsdf_pdf) = self.eval(sample.wi);
+        let light_pdf = sample.pdf * R::splat(pick);
+        let can_be_hit = sample.pdf.gt(R::zero());
+        let weight = if mis {
+            R::select(can_be_hit, power_heuristic(light_pdf, bsdf_pdf), R::one())
+        } else {
+            R::one()
+        };
+        let radiance = (self.path.beta * f * sample.weight).scale(weight * R::splat(1.0 / pick));
+        let (org, _) = self.leave(sample.wi);
+        let (dir, t_far) = if sample.at_infinity {
+            (sample.wi, R::splat(f32::INFINITY))
+        } else {
+            (sample.target - org, R::splat(REACH))
+        };
+        Connection {
+            lanes: sample.valid & radiance.max_element().gt(R::zero()),
+            ray: (org, dir, t_far),
+            radiance,
+        }
+    }
+
+    /// Light from all emitters, one connection each: `connect` for those that can contribute.
+    #[inline]
+    pub(super) fn connect_all(
+        &self,
+        scene: &Scene,
+        mis: bool,
+        random: impl Fn(u32) -> (R, R),
+        mut shadow: impl FnMut(usize, Connection<R>),
+    ) {
+        if !self.is_smooth() {
+            return;
+        }
+        for (index, light) in scene.lights.iter().enumerate() {
+            shadow(index, self.connect(light, 1.0, mis, random(index as u32)));
+        }
+    }
+
+    /// Light from one emitter a lane, picked uniformly.
+    #[inline]
+    pub(super) fn connect_one(&self, scene: &Scene, (u, v): (R, R)) -> Option<Connection<R>> {
+        let count = scene.lights.len();
+        if count == 0 || !self.is_smooth() {
+            return None;
+        }
+        let scaled = u * R::splat(count as f32);
+        let floor = scaled.floor().min(R::splat(count as f32 - 1.0));
+        let rest = (scaled - floor).min(R::splat(1.0 - f32::EPSILON / 2.0));
+        let pick = 1.0 / count as f32;
+        let mut all: Option<Connection<R>> = None;
+        for (index, lanes) in distinct::<R>(floor.to_int()) {
+            let one = self.connect(&scene.lights[index as usize], pick, true, (rest, v));
+            all = Some(match all {
+                None => Connection { lanes: one.lanes & lanes, ..one },
+                Some(all) => Connection {
+                    lanes: (all.lanes & !lanes) | (one.lanes & lanes),
+                    ray: (
+                        Vector3::select(lanes, one.ray.0, all.ray.0),
+                        Vector3::select(lanes, one.ray.1, all.ray.1),
+                        R::select(lanes, one.ray.2, all.ray.2),
+                    ),
+                    radiance: Vector3::select(lanes, one.radiance, all.radiance),
+                },
+            });
+        }
+        all
+    }
+}
+
+/// Light from infinity along rays that leave the scene, times `beta`; weighted as by
+/// [`Vertex::emitted`].
+#[inline]
+pub(super) fn environment<R: Real>(scene: &Scene, path: &Path<R>, pick: f32) -> Vector3<R> {
+    let mut total = Vector3::zero();
+    for &LightId(index) in &scene.environments {
+        let light = &scene.lights[index as usize];
+        if let Some(radiance) = light.environment() {
+            let weight = mis_weight(path.pdf, light.environment_pdf::<R>() * R::splat(pick));
+            total = total + (path.beta * Vector3::splat(radiance)).scale(weight);
+        }
+    }
+    total
+}
+
+/// The power heuristic, 1 for rays that no light sample could have drawn.
+#[inline]
+fn mis_weight<R: Real>(pdf: R, light_pdf: R) -> R {
+    let only_way = pdf.equal(R::splat(f32::INFINITY));
+    R::select(only_way, R::one(), power_heuristic(pdf, light_pdf))
+}
+
+/// The different values among lanes, each with its lanes.
+#[inline]
+fn distinct<R: Real>(values: R::Bits) -> impl Iterator<Item = (u32, R::Mask)> {
+    let mut left = (1u32 << R::LANES) - 1;
+    std::iter::from_fn(move || {
+        if left == 0 {
+            return None;
+        }
+        let value = values.lane(left.trailing_zeros() as usize);
+        let lanes = values.equal(R::Bits::splat(value));
+        left &= !lanes.to_bitmask();
+        Some((value, lanes))
+    })
+}

@@ -1,0 +1,288 @@
+//! A tile, eight rays at a time.
+//!
+//! One round takes all paths of the tile by one vertex: trace, sort by material, shade in groups of
+//! eight, trace the shadow rays, add, compact. What a group has to say goes to places that belong to the
+//! slot, so the order in which groups are shaded can't be seen in the picture: sorting changes no bit.
+
+use bumpalo::{Bump, collections::Vec as BumpVec};
+
+use super::camera_rays;
+use super::columns::{
+    Column, Column3, IntColumn, PathColumns, RayColumns, column3, fill, gather, gather3, lane_bits, scatter,
+    scatter3,
+};
+use super::integrator::{Integrator, Outgoing, Path};
+use super::sort::{Sorter, for_each_unsorted_group};
+use super::statistics::Statistics;
+use super::trace::{self, HitColumns};
+use super::vertex::Vertex;
+use crate::bvh::Tracer;
+use crate::compile::Scene;
+use crate::film::{Tile, TileFilm};
+use crate::geometry::PrimitiveId;
+use crate::material::MaterialId;
+use crate::simd::{Bits, LANES, Mask8, Real, Vec3x8, f32x8, u32x8};
+
+/// Renders all samples of a tile.
+pub(super) fn render<I: Integrator>(
+    scene: &Scene,
+    integrator: &I,
+    sort: bool,
+    tile: &Tile,
+    statistics: &mut Statistics,
+    sample_done: impl Fn(),
+) -> TileFilm {
+    let arena = Bump::new();
+    let pixels = camera_rays::morton(tile);
+    let channels = integrator.channels().len();
+    let mut film = TileFilm::new(tile.len(), channels);
+    let mut wave = Wavefront::new(&arena, scene, integrator, sort, channels);
+    for sample in 0..scene.sampler.sample_count {
+        wave.start(tile, &pixels, sample);
+        wave.run(sample, statistics);
+        for (place, &(x, y)) in pixels.iter().enumerate() {
+            film.add((y * tile.width + x) as usize, sample, |c| wave.sums[c][place]);
+        }
+        statistics.samples += pixels.len() as u64;
+        sample_done();
+    }
+    film
+}
+
+struct Wavefront<'a, I> {
+    scene: &'a Scene,
+    integrator: &'a I,
+    sort: bool,
+    tracer: Tracer,
+    paths: PathColumns<'a>,
+    hits: HitColumns<'a>,
+    /// Material of each hit; one more than the last material for a miss.
+    keys: IntColumn<'a>,
+    sorter: Sorter<'a>,
+    out: Outputs<'a>,
+    /// For each channel and each pixel what its paths have brought.
+    sums: BumpVec<'a, Column<'a>>,
+}
+
+/// What the groups of a round have said, by slot.
+struct Outputs<'a> {
+    /// For each channel what the vertex adds.
+    added: BumpVec<'a, Column<'a>>,
+    shadows: RayColumns<'a>,
+    /// Where each shadow ray's light stands in `connected`.
+    shadow_target: IntColumn<'a>,
+    /// Light of shadow rays: index-major, then by slot; 0 where there is none.
+    connected: Column3<'a>,
+    next: PathColumns<'a>,
+    /// Which of `next` are paths at all. Branches of a slot stand together.
+    alive: BumpVec<'a, bool>,
+    /// Scratch of compaction.
+    kept: IntColumn<'a>,
+    branches: usize,
+    slots: usize,
+}
+
+impl<'a, I: Integrator> Wavefront<'a, I> {
+    fn new(arena: &'a Bump, scene: &'a Scene, integrator: &'a I, sort: bool, channels: usize) -> Self {
+        let planes = || BumpVec::from_iter_in((0..channels).map(|_| BumpVec::new_in(arena)), arena);
+        Self {
+            scene,
+            integrator,
+            sort,
+            tracer: Tracer::new(()),
+            paths: PathColumns::new(arena),
+            hits: HitColumns::new(arena),
+            keys: BumpVec::new_in(arena),
+            sorter: Sorter::new(arena, scene.materials.len() + 1),
+            out: Outputs {
+                added: planes(),
+                shadows: RayColumns::new(arena),
+                shadow_target: BumpVec::new_in(arena),
+                connected: column3(arena),
+                next: PathColumns::new(arena),
+                alive: BumpVec::new_in(arena),
+                kept: BumpVec::new_in(arena),
+                branches: integrator.branches(),
+                slots: 0,
+            },
+            sums: planes(),
+        }
+    }
+
+    /// One path from each pixel.
+    fn start(&mut self, tile: &Tile, pixels: &[(u32, u32)], sample: u32) {
+        for sum in &mut self.sums {
+            sum.clear();
+            sum.resize(pixels.len(), 0.0);
+        }
+        self.paths.resize(pixels.len());
+        for (packet, group) in pixels.chunks(LANES).enumerate() {
+            let pixel = |i: usize| group[i.min(group.len() - 1)];
+            let x = u32x8::from_fn(|i| tile.x + pixel(i).0);
+            let y = u32x8::from_fn(|i| tile.y + pixel(i).1);
+            let path = Path::start(camera_rays::keys::<f32x8>(self.scene, x, y), sample);
+            let ray = camera_rays::rays::<f32x8>(self.scene, x, y, &path);
+            let at = std::array::from_fn(|i| (packet * LANES + i) as u32);
+            self.paths.store(&at, (1 << group.len()) - 1, (ray.org, ray.dir, ray.t_far), &path);
+            for (i, slot) in at.into_iter().enumerate().take(group.len()) {
+                self.paths.pixel[slot as usize] = (packet * LANES + i) as u32;
+            }
+        }
+    }
+
+    /// All rounds of a sample.
+    fn run(&mut self, sample: u32, statistics: &mut Statistics) {
+        let mut depth = 0;
+        while self.paths.len > 0 {
+            let rays = if depth == 0 { &mut statistics.camera_rays } else { &mut statistics.bounce_rays };
+            *rays += self.paths.len as u64;
+            let used = trace::closest(
+                self.scene,
+                &self.paths.rays,
+                self.paths.len,
+                &mut self.hits,
+                &mut self.tracer,
+            );
+            statistics.trace_lanes += used;
+            self.shade(depth, sample, statistics);
+            self.connect(statistics);
+            self.add();
+            self.advance();
+            depth += 1;
+        }
+    }
+
+    fn shade(&mut self, depth: u32, sample: u32, statistics: &mut Statistics) {
+        let Self { scene, integrator, paths, hits, keys, sorter, out, .. } = self;
+        out.clear(paths.len, integrator.shadow_rays(scene));
+        let miss = scene.materials.len() as u32;
+        keys.clear();
+        keys.extend(hits.primitive[..paths.len].iter().map(|&primitive| match PrimitiveId(primitive) {
+            PrimitiveId::NONE => miss,
+            hit => scene.material(hit).0,
+        }));
+        let group = |key: u32, slots: &[u32]| {
+            statistics.shade_lanes.add(slots.len() as u32);
+            let mut group = Group { slots: fill(slots), count: slots.len(), out };
+            let at = group.slots;
+            let path = paths.path(&at, depth, sample);
+            let (org, dir) = (gather3(&paths.rays.org, &at), gather3(&paths.rays.dir, &at));
+            if key == miss {
+                integrator.miss(scene, &path, dir, &mut group);
+                return;
+            }
+            let tuv = (gather(&hits.t, &at), gather(&hits.u, &at), gather(&hits.v, &at));
+            let primitive = u32x8::from_fn(|i| hits.primitive[at[i] as usize]);
+            let vertex = Vertex::new(scene, path, (org, dir), tuv, primitive, MaterialId(key));
+            integrator.shade(scene, &vertex, &mut group);
+        };
+        if self.sort {
+            sorter.sort(keys);
+            sorter.for_each_group(group);
+        } else {
+            for_each_unsorted_group(keys, group);
+        }
+    }
+
+    /// Takes back the light of shadow rays that are blocked.
+    fn connect(&mut self, statistics: &mut Statistics) {
+        let Outputs { shadows, shadow_target, connected, .. } = &mut self.out;
+        let len = shadow_target.len();
+        statistics.shadow_rays += len as u64;
+        shadows.resize(len.next_multiple_of(LANES));
+        let used = trace::occluded(self.scene, shadows, len, &mut self.tracer, |ray| {
+            connected.iter_mut().for_each(|channel| channel[shadow_target[ray] as usize] = 0.0);
+        });
+        statistics.trace_lanes += used;
+    }
+
+    /// Adds each vertex to its pixel: vertices in the order of slots, light in the order of its index.
+    fn add(&mut self) {
+        let Self { paths, out, sums, integrator, scene, .. } = self;
+        let shadows = integrator.shadow_rays(scene);
+        for (c, (sum, added)) in sums.iter_mut().zip(&out.added).enumerate() {
+            for slot in 0..paths.len {
+                let mut value = added[slot];
+                for index in 0..shadows {
+                    value += out.connected[c][index * out.slots + slot];
+                }
+                sum[paths.pixel[slot] as usize] += value;
+            }
+        }
+    }
+
+    /// The rays that go on become the next round's.
+    fn advance(&mut self) {
+        let Self { paths, out, .. } = self;
+        for slot in 0..paths.len * out.branches {
+            out.next.pixel[slot] = paths.pixel[slot / out.branches];
+        }
+        out.next.compact(&out.alive, &mut out.kept);
+        std::mem::swap(paths, &mut out.next);
+    }
+}
+
+impl Outputs<'_> {
+    fn clear(&mut self, slots: usize, shadows: usize) {
+        self.slots = slots;
+        for channel in &mut self.added {
+            channel.clear();
+            channel.resize(slots, 0.0);
+        }
+        self.shadows.resize(0);
+        self.shadow_target.clear();
+        for channel in &mut self.connected {
+            channel.clear();
+            channel.resize(slots * shadows, 0.0);
+        }
+        self.next.resize(slots * self.branches);
+        self.alive.clear();
+        self.alive.resize(slots * self.branches, false);
+    }
+}
+
+/// A group of at most eight slots that is being shaded.
+struct Group<'g, 'a> {
+    slots: [u32; LANES],
+    count: usize,
+    out: &'g mut Outputs<'a>,
+}
+
+impl Outgoing<f32x8> for Group<'_, '_> {
+    fn add(&mut self, channel: usize, value: f32x8) {
+        scatter(&mut self.out.added[channel], &self.slots, (1 << self.count) - 1, value);
+    }
+
+    fn shadow(&mut self, index: usize, lanes: Mask8, ray: (Vec3x8, Vec3x8, f32x8), radiance: Vec3x8) {
+        let lanes = lane_bits(lanes, self.count);
+        let slots = self.out.slots;
+        let target = self.slots.map(|slot| (index * slots) as u32 + slot);
+        self.out.shadows.push(lanes, ray);
+        self.out.shadow_target.extend((0..LANES).filter(|i| lanes >> i & 1 != 0).map(|i| target[i]));
+        scatter3(&mut self.out.connected, &target, lanes, radiance);
+    }
+
+    fn next(&mut self, index: usize, lanes: Mask8, (org, dir): (Vec3x8, Vec3x8), path: &Path<f32x8>) {
+        let lanes = lane_bits(lanes, self.count);
+        let branches = self.out.branches;
+        let at = self.slots.map(|slot| slot * branches as u32 + index as u32);
+        self.out.next.store(&at, lanes, (org, dir, f32x8::splat(f32::INFINITY)), path);
+        for i in (0..LANES).filter(|i| lanes >> i & 1 != 0) {
+            self.out.alive[at[i] as usize] = true;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lanes_beyond_the_count_say_nothing() {
+        let arena = Bump::new();
+        let mut column = BumpVec::from_iter_in([0.0; 16], &arena);
+        scatter(&mut column, &fill(&[3, 9]), lane_bits(Mask8::first(8), 2), f32x8::splat(1.0));
+        assert_eq!(column.iter().sum::<f32>(), 2.0);
+        assert_eq!(u32x8::from_fn(|i| fill(&[3, 9])[i]).lane(7), 9);
+    }
+}

@@ -1,0 +1,46 @@
+//! Whitted's recursion \[Whi80\]: direct light at smooth surfaces, both branches at mirrors and glass.
+
+use super::integrator::{Integrator, Outgoing, Path, add_rgb};
+use super::vertex::{Vertex, environment};
+use crate::compile::Scene;
+use crate::math::Sampler;
+use crate::simd::{Real, Vector3};
+
+/// The classic picture. Shadow rays go to every light and are blocked by glass.
+pub(super) struct Whitted {
+    /// Vertices counted from the eye.
+    pub(super) max_depth: u32,
+}
+
+impl Integrator for Whitted {
+    fn shadow_rays(&self, scene: &Scene) -> usize {
+        scene.lights.len()
+    }
+
+    fn branches(&self) -> usize {
+        2
+    }
+
+    fn miss<R: Real>(&self, scene: &Scene, path: &Path<R>, _: Vector3<R>, out: &mut impl Outgoing<R>) {
+        add_rgb(out, environment(scene, path, 1.0));
+    }
+
+    fn shade<R: Real>(&self, scene: &Scene, vertex: &Vertex<R>, out: &mut impl Outgoing<R>) {
+        let path = &vertex.path;
+        add_rgb(out, vertex.emitted(scene, 1.0));
+        if path.depth + 1 >= self.max_depth {
+            return;
+        }
+        let pairs = scene.lights.len() as u32;
+        vertex.connect_all(
+            scene,
+            false,
+            |k| path.random(pairs, k),
+            |k, c| out.shadow(k, c.lanes, c.ray, c.radiance),
+        );
+        let [(reflects, mirrored, reflected), (refracts, through, refracted)] = vertex.branches();
+        out.next(0, reflects, mirrored, &reflected);
+        let key = Sampler::<R>::new(path.key, path.sample).branch_key();
+        out.next(1, refracts, through, &Path { key, ..refracted });
+    }
+}

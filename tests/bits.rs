@@ -1,0 +1,204 @@
+//! The contract of bits: packet or scalar, one thread or several, sorted or not, on every instruction
+//! set, a scene is one picture.
+//!
+//! Every scene in `scenes/` is rendered small, at a size that leaves tiles and packets partly empty.
+//! Within one build its pictures are compared channel by channel, bit by bit; across builds they are
+//! compared by [`FROZEN`] hashes, which SSE2, AVX2 and AVX-512 must all give.
+
+#![allow(missing_docs)]
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use packlight::{
+    compile::{Scene, compile},
+    load::{LoadOptions, load},
+    picture::Picture,
+    render::{Backend, Settings, render},
+    scene::{Aov, AovChannel, Film, Integrator, SceneDescription},
+};
+
+/// FNV-1a of each scene's picture by its own integrator, at [`FILM`] and [`SAMPLES`].
+///
+/// A hash changes when the picture is *meant* to change: by an edit of the scene, another estimator,
+/// another order of random numbers. Then run this test, look at the new picture, take the hash from the
+/// complaint, and say why in CHANGELOG.md. A hash that changes without such a reason, or on one
+/// instruction set only, is a broken contract, and no hash is to be taken from it.
+const FROZEN: &[(&str, u64)] = &[
+    ("cornell", 0x32a0_1a69_46e9_97eb),
+    ("mesh", 0xf9c1_a1dc_3503_9fbb),
+    ("spheres", 0x6034_b299_632d_84c6),
+    ("whitted", 0xde1e_e07d_d10c_2ffd),
+];
+
+/// Four tiles of 32 × 32 at most, 32 × 3 and 11 × 3 pixels among them.
+const FILM: Film = Film { width: 43, height: 35 };
+/// Not a power of two.
+const SAMPLES: u32 = 3;
+
+const PACKET: Settings = Settings { backend: Backend::Packet, sort: true };
+const UNSORTED: Settings = Settings { backend: Backend::Packet, sort: false };
+const SCALAR: Settings = Settings { backend: Backend::Scalar, sort: true };
+
+/// Every way to render that must not be seen in the picture, beside packets on one thread.
+const WAYS: [(&str, Settings, usize); 6] = [
+    ("packet, 2 threads", PACKET, 2),
+    ("packet, 3 threads", PACKET, 3),
+    ("unsorted, 1 thread", UNSORTED, 1),
+    ("unsorted, 3 threads", UNSORTED, 3),
+    ("scalar, 1 thread", SCALAR, 1),
+    ("scalar, 2 threads", SCALAR, 2),
+];
+
+/// All files `scenes/*.xml`, by name.
+fn scenes() -> Vec<(String, PathBuf)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let entries = fs::read_dir(folder).expect("scenes/ can be read");
+    let paths = entries.map(|entry| entry.expect("scenes/ can be read").path());
+    let scenes = paths.filter(|path| path.extension().is_some_and(|extension| extension == "xml"));
+    let mut scenes: Vec<_> =
+        scenes.map(|path| (path.file_stem().expect("a name").to_string_lossy().into_owned(), path)).collect();
+    scenes.sort();
+    assert!(!scenes.is_empty(), "scenes/ holds no .xml");
+    scenes
+}
+
+fn description(path: &Path) -> SceneDescription {
+    let loaded = load(path, &LoadOptions::default()).expect("a scene of ours loads");
+    assert!(loaded.warnings.is_empty(), "{}: {}", path.display(), loaded.warnings[0]);
+    let mut description = loaded.description;
+    description.sensor.film = FILM;
+    description.sensor.sampler.sample_count = SAMPLES;
+    description
+}
+
+/// Compiled and rendered on a pool of this many threads.
+fn on_threads(threads: usize, scene: &Scene, settings: &Settings) -> Picture {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
+    let rendered = pool.install(|| render(scene, settings, &|_| {}));
+    assert_eq!(rendered.statistics.invalid_samples, 0, "a sample is not finite");
+    rendered.picture
+}
+
+/// The first difference, if any, as a place in the picture.
+fn difference(one: &Picture, other: &Picture) -> Option<String> {
+    assert_eq!((one.width, one.height), (other.width, other.height));
+    assert_eq!(one.channels.len(), other.channels.len());
+    for (a, b) in one.channels.iter().zip(&other.channels) {
+        assert_eq!(a.name, b.name);
+        assert_eq!(a.samples.len(), b.samples.len());
+        let mut pairs = a.samples.iter().zip(&b.samples).enumerate();
+        if let Some((i, (x, y))) = pairs.find(|(_, (x, y))| x.to_bits() != y.to_bits()) {
+            let (column, row) = (i % one.width as usize, i / one.width as usize);
+            return Some(format!("channel {} of pixel ({column}, {row}) is {x:?}, not {y:?}", a.name));
+        }
+    }
+    None
+}
+
+/// Each integrator with its usual parameters; the first is the scene's own.
+fn integrators(own: &Integrator) -> Vec<(&'static str, Integrator)> {
+    let kinds = [
+        ("depth", Aov::Depth),
+        ("position", Aov::Position),
+        ("uv", Aov::Uv),
+        ("geo_normal", Aov::GeoNormal),
+        ("sh_normal", Aov::ShNormal),
+    ];
+    let channels = kinds.map(|(name, kind)| AovChannel { name: name.into(), kind }).into();
+    let others = [
+        ("whitted", Integrator::Whitted { max_depth: 7 }),
+        ("direct", Integrator::Direct { hide_emitters: false }),
+        // Roulette begins early, so that it is seen in paths of this length.
+        ("path", Integrator::Path { max_depth: Some(9), rr_depth: 2, hide_emitters: true }),
+        ("aov", Integrator::Aov { channels }),
+    ];
+    [("own integrator", own.clone())].into_iter().chain(others).collect()
+}
+
+/// 64-bit FNV-1a over the bits of every channel, least significant byte first.
+fn hash(picture: &Picture) -> u64 {
+    let bytes =
+        picture.channels.iter().flat_map(|channel| &channel.samples).flat_map(|x| x.to_bits().to_le_bytes());
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+#[test]
+fn every_way_to_render_gives_the_same_bits() {
+    for (name, path) in scenes() {
+        let mut scene = compile(&description(&path)).expect("a scene of ours compiles");
+        for (integrator, chosen) in integrators(&scene.integrator) {
+            scene.integrator = chosen;
+            let packet = on_threads(1, &scene, &PACKET);
+            let values = packet.channels.iter().flat_map(|channel| &channel.samples);
+            assert!(values.copied().any(|x| x != 0.0), "{name}, {integrator}: nothing is to be seen");
+            for (way, settings, threads) in WAYS {
+                if let Some(difference) = difference(&on_threads(threads, &scene, &settings), &packet) {
+                    panic!("scenes/{name}.xml, {integrator}, {way}: {difference}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_tree_does_not_depend_on_the_threads_that_build_it() {
+    for (name, path) in scenes() {
+        let description = description(&path);
+        let pictures = [1, 3].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            let scene = pool.expect("threads can be started").install(|| compile(&description));
+            on_threads(1, &scene.expect("a scene of ours compiles"), &PACKET)
+        });
+        assert_eq!(difference(&pictures[0], &pictures[1]), None, "scenes/{name}.xml");
+    }
+}
+
+#[test]
+fn every_instruction_set_gives_the_frozen_picture() {
+    let mut complaints = Vec::new();
+    let scenes = scenes();
+    for (name, path) in &scenes {
+        let scene = compile(&description(path)).expect("a scene of ours compiles");
+        let hash = hash(&on_threads(2, &scene, &PACKET));
+        match FROZEN.iter().find(|(frozen, _)| frozen == name) {
+            Some((_, frozen)) if *frozen == hash => {}
+            Some((_, frozen)) => {
+                complaints.push(format!("{name}: {hash:#018x}, but {frozen:#018x} is frozen"));
+            }
+            None => complaints.push(format!("{name}: {hash:#018x} is not frozen yet")),
+        }
+    }
+    for (frozen, _) in FROZEN {
+        if !scenes.iter().any(|(name, _)| name == frozen) {
+            complaints.push(format!("{frozen} is frozen, but scenes/{frozen}.xml is gone"));
+        }
+    }
+    let lanes = packlight::simd::cpu::compiled();
+    assert!(complaints.is_empty(), "lanes: {lanes}\n{}\n", complaints.join("\n"));
+}
+
+/// What no scene has, no test here compares.
+#[test]
+fn the_scenes_between_them_have_everything() {
+    let read = |(_, path): &(String, PathBuf)| fs::read_to_string(path).expect("a scene can be read");
+    let text: String = scenes().iter().map(read).collect();
+    let shapes = ["sphere", "rectangle", "cube", "disk", "cylinder", "obj", "ply"];
+    let materials = ["diffuse", "conductor", "dielectric", "phong", "twosided"];
+    let others = ["bitmap", "checkerboard", "area", "point", "spot", "directional", "constant"];
+    for kind in shapes.iter().chain(&materials).chain(&others) {
+        assert!(text.contains(&format!(" type=\"{kind}\"")), "no scene has a `{kind}`");
+    }
+}
+
+#[test]
+fn one_bit_is_a_difference() {
+    let channel = |x: f32| packlight::picture::Channel { name: "R".into(), samples: vec![1.0, x] };
+    let picture = |x: f32| Picture { width: 2, height: 1, channels: vec![channel(x)] };
+    assert_eq!(difference(&picture(0.5), &picture(0.5)), None);
+    assert!(difference(&picture(0.0), &picture(-0.0)).is_some_and(|text| text.contains("(1, 0)")));
+    assert_ne!(hash(&picture(0.0)), hash(&picture(-0.0)));
+    assert_eq!(hash(&Picture::default()), 0xcbf2_9ce4_8422_2325);
+}

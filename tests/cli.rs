@@ -1,0 +1,209 @@
+//! The program as a shell sees it: exit codes, and what goes to which stream.
+
+#![allow(missing_docs)]
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output, Stdio},
+};
+
+fn packlight(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_packlight"))
+        .args(arguments)
+        .stdin(Stdio::null())
+        .output()
+        .expect("the program starts")
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// Exit code, and a part of the message on stderr; stdout stays empty.
+fn fails(arguments: &[&str], code: i32, part: &str) {
+    let output = packlight(arguments);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {}", stderr(&output));
+    assert!(stderr(&output).contains(part), "{arguments:?}: {part} is not in\n{}", stderr(&output));
+    assert!(output.stdout.is_empty(), "{arguments:?}: {}", stdout(&output));
+}
+
+/// An empty folder of its own for a test.
+fn folder(test: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+    if folder.exists() {
+        fs::remove_dir_all(&folder).expect("an old folder can be removed");
+    }
+    fs::create_dir_all(&folder).expect("a folder can be made");
+    folder
+}
+
+fn path(folder: &Path, name: &str) -> String {
+    folder.join(name).display().to_string()
+}
+
+#[test]
+fn help_is_on_stdout_with_examples_and_exit_codes() {
+    let output = packlight(&["--help"]);
+    assert_eq!(output.status.code(), Some(0));
+    for part in ["render", "info", "Examples:", "Exit codes:"] {
+        assert!(stdout(&output).contains(part), "{part} is not in\n{}", stdout(&output));
+    }
+    assert!(output.stderr.is_empty(), "{}", stderr(&output));
+}
+
+#[test]
+fn help_of_a_command_is_grouped() {
+    let output = packlight(&["render", "--help"]);
+    assert_eq!(output.status.code(), Some(0));
+    for part in ["Picture:", "Machine", "--spp", "--backend", "--define"] {
+        assert!(stdout(&output).contains(part), "{part} is not in\n{}", stdout(&output));
+    }
+}
+
+#[test]
+fn version_says_which_lanes_were_compiled() {
+    let output = packlight(&["--version"]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(stdout(&output).starts_with(concat!("packlight ", env!("CARGO_PKG_VERSION"))));
+    assert!(stdout(&output).contains("f32x8 in "), "{}", stdout(&output));
+}
+
+#[test]
+fn usage_errors_are_2() {
+    fails(&["rendr"], 2, "render");
+    fails(&["render", "a.xml"], 2, "--output");
+    fails(&["render", "a.xml", "-o", "a.exr", "--spp", "0"], 2, "--spp");
+    fails(&["render", "a.xml", "-o", "a.exr", "--width", "0"], 2, "--width");
+    fails(&["render", "a.xml", "-o", "a.exr", "--threads", "0"], 2, "--threads");
+    fails(&["render", "a.xml", "-o", "a.exr", "--integrator", "bdpt"], 2, "whitted");
+    fails(&["render", "a.xml", "-o", "a.exr", "--exposure", "nan"], 2, "--exposure");
+    fails(&["render", "a.xml", "-o", "a.exr", "-D", "spp"], 2, "NAME=VALUE");
+}
+
+#[test]
+fn an_unknown_extension_is_2_whatever_the_scene() {
+    fails(&["render", "no-such-scene.xml", "-o", "a.jpg"], 2, ".exr, .hdr or .png");
+    fails(&["render", "no-such-scene.xml", "-o", "a"], 2, ".exr, .hdr or .png");
+}
+
+#[test]
+fn no_arguments_show_the_help() {
+    fails(&[], 2, "Usage:");
+}
+
+#[test]
+fn a_missing_scene_is_1_and_named() {
+    let folder = folder("missing-scene");
+    fails(&["info", "no-such-scene.xml"], 1, "no-such-scene.xml");
+    let out = path(&folder, "a.exr");
+    fails(&["render", "no-such-scene.xml", "-o", &out], 1, "no-such-scene.xml");
+    assert_eq!(fs::read_dir(&folder).expect("readable").count(), 0, "something was left behind");
+}
+
+#[test]
+fn a_missing_folder_is_1_before_anything_is_loaded() {
+    let folder = folder("missing-folder");
+    let out = path(&folder, "no/such/a.exr");
+    fails(&["render", "no-such-scene.xml", "-o", &out], 1, "create it first");
+    assert_eq!(fs::read_dir(&folder).expect("readable").count(), 0, "something was left behind");
+}
+
+#[test]
+fn a_folder_in_place_of_a_picture_is_1() {
+    let folder = folder("folder-as-picture");
+    let out = path(&folder, "a.exr");
+    fs::create_dir(&out).expect("a folder can be made");
+    fails(&["render", "no-such-scene.xml", "-o", &out], 1, "is a folder");
+}
+
+/// `/proc` takes no files, not even from root.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_unwritable_folder_is_1_before_anything_is_loaded() {
+    fails(&["render", "no-such-scene.xml", "-o", "/proc/a.exr"], 1, "can't write into /proc");
+}
+
+#[test]
+fn a_refused_scene_is_plain_text_in_a_pipe() {
+    let folder = folder("refused-scene");
+    let scene = path(&folder, "broken.xml");
+    fs::write(&scene, "<scene version=\"3.0.0\">\n    <shape type=\"sphere\"\n</scene>\n").expect("writable");
+    let output = packlight(&["info", &scene]);
+    assert_eq!(output.status.code(), Some(1), "{}", stdout(&output));
+    assert!(output.stdout.is_empty());
+    let message = stderr(&output);
+    assert!(message.contains("broken.xml"), "{message}");
+    assert!(message.is_ascii() && !message.contains('\x1b'), "{message}");
+}
+
+/// A scene that every stage can do: one triangle, one light.
+fn triangle(folder: &Path) -> String {
+    let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    fs::write(folder.join("triangle.obj"), mesh).expect("writable");
+    path(folder, "triangle.obj")
+}
+
+#[test]
+fn json_is_one_object_and_nothing_else() {
+    let folder = folder("json");
+    let scene = triangle(&folder);
+    let out = path(&folder, "a.exr");
+    for arguments in [
+        vec!["info", &scene, "--json"],
+        vec!["render", &scene, "-o", &out, "--width", "8", "--spp", "1", "--json"],
+    ] {
+        let output = packlight(&arguments);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one JSON value");
+        assert_eq!(json["scene"], scene.as_str());
+        assert!(json["lanes"].as_str().is_some_and(|lanes| lanes.starts_with("f32x8")));
+    }
+}
+
+#[test]
+fn a_render_is_told_on_stdout_unless_quiet() {
+    let folder = folder("summary");
+    let scene = triangle(&folder);
+    let out = path(&folder, "a.png");
+    let arguments = ["render", &scene, "-o", &out, "--width", "8", "--spp", "1", "--threads", "1"];
+    let told = packlight(&arguments);
+    assert_eq!(told.status.code(), Some(0), "{}", stderr(&told));
+    for part in ["8 x 6", "1 sample a pixel", "1 thread", "Mrays/s"] {
+        assert!(stdout(&told).contains(part), "{part} is not in\n{}", stdout(&told));
+    }
+    assert!(!stderr(&told).contains("rendering ["), "a progress bar in a pipe");
+    let quiet = packlight(&[&arguments[..], &["--quiet"]].concat());
+    assert_eq!(quiet.status.code(), Some(0));
+    assert!(quiet.stdout.is_empty(), "{}", stdout(&quiet));
+}
+
+#[test]
+fn channels_without_names_are_refused_for_aov() {
+    let folder = folder("aov-png");
+    let scene = triangle(&folder);
+    let out = path(&folder, "a.png");
+    fails(&["render", &scene, "-o", &out, "--integrator", "aov"], 2, "only an .exr");
+}
+
+#[test]
+fn a_closed_pipe_is_not_a_panic() {
+    let folder = folder("closed-pipe");
+    let scene = triangle(&folder);
+    for arguments in [vec!["info", &scene], vec!["--help"]] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_packlight"))
+            .args(&arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program starts");
+        drop(child.stdout.take());
+        let output = child.wait_with_output().expect("the program ends");
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
+        assert!(!stderr(&output).contains("panicked"), "{}", stderr(&output));
+    }
+}

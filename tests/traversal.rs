@@ -1,0 +1,249 @@
+//! Packets and single rays find what testing every primitive finds: the same hit, t, u, v and id, to the
+//! bit, and are blocked where it finds anything.
+
+#![allow(missing_docs)]
+
+#[path = "traversal/aim.rs"]
+mod aim;
+#[path = "traversal/scenes.rs"]
+mod scenes;
+
+use glam::Vec3;
+use packlight::bvh::{Tracer, Traversal, Way};
+use packlight::compile::{Scene, compile};
+use packlight::geometry::{Hit, PrimitiveId, Ray, Ray32, RayLanes, Rayx8};
+use packlight::scene::SceneDescription;
+use packlight::simd::{Mask8, Real, Vector3, f32x8};
+
+use aim::{Random, rays_at};
+use scenes::{shared, targets};
+
+fn bits(hit: Hit) -> (u32, u32, u32, PrimitiveId) {
+    (hit.t.to_bits(), hit.u.to_bits(), hit.v.to_bits(), hit.primitive)
+}
+
+fn packet(rays: &[Ray; 8]) -> Rayx8 {
+    RayLanes {
+        org: Vector3::from_fn(|i| rays[i].org),
+        dir: Vector3::from_fn(|i| rays[i].dir),
+        rdir: Vector3::from_fn(|i| rays[i].rdir),
+        t_near: f32x8::from_fn(|i| rays[i].t_near),
+        t_far: f32x8::from_fn(|i| rays[i].t_far),
+    }
+}
+
+/// What one run of comparisons saw, so that a test can say that it was not about nothing.
+#[derive(Default, Debug)]
+struct Seen {
+    rays: usize,
+    hits: usize,
+}
+
+/// All queries about these rays against brute force.
+fn agree(scene: &Scene, rays: &[Ray]) -> Seen {
+    let mut traversal = Traversal::new(());
+    let mut seen = Seen::default();
+    let want: Vec<Hit> = rays.iter().map(|ray| scene.brute_force(ray)).collect();
+    for (ray, want) in rays.iter().zip(&want) {
+        let got = scene.closest_hit(ray, &mut traversal);
+        assert_eq!(bits(got), bits(*want), "single {got:?}, brute force {want:?}: {ray:?}");
+        let hits = want.primitive != PrimitiveId::NONE;
+        assert_eq!(scene.occluded(ray, &mut traversal), hits, "{want:?}: {ray:?}");
+        assert!(!hits || ray.t_near < want.t && want.t <= ray.t_far, "{want:?}: {ray:?}");
+        seen.rays += 1;
+        seen.hits += usize::from(hits);
+    }
+    let mut random = Random::new(rays.len() as u64);
+    // Neighbours together (coherent, if the rays came so), strangers together, and one origin or ray eight times.
+    let neighbours =
+        (0..rays.len()).map(|i| std::array::from_fn(|lane| (i / 8 * 8 + lane) % rays.len())).step_by(8);
+    let strangers = (0..rays.len().div_ceil(8)).map(|_| [(); 8].map(|()| random.below(rays.len())));
+    let strangers: Vec<[usize; 8]> = strangers.collect();
+    let same = (0..rays.len()).step_by(31).map(|i| [i; 8]);
+    for (i, group) in neighbours.chain(strangers).chain(same).enumerate() {
+        let active = [0xff, 0xff, 0xff, 0x01, 0x80, 0x5a, 0, 0x7f, 0x0f, 0x33][i % 10];
+        compare_packet(scene, group.map(|i| rays[i]), group.map(|i| want[i]), active, &mut traversal);
+    }
+    every_way(scene, rays, &want);
+    seen
+}
+
+/// Streams by each way, in the order given and by octant, so that tiles are whole and of one octant.
+fn every_way(scene: &Scene, rays: &[Ray], want: &[Hit]) {
+    let octant = |i: &usize| {
+        let negative = rays[*i].rdir.cmplt(Vec3::ZERO);
+        (negative.x, negative.y, negative.z)
+    };
+    let given: Vec<usize> = (0..rays.len()).collect();
+    let mut by_octant = given.clone();
+    by_octant.sort_by_key(octant);
+    for order in [given, by_octant] {
+        let stream: Vec<Ray32> = order
+            .iter()
+            .map(|&i| Ray32::new(rays[i].org, rays[i].dir, rays[i].t_near, rays[i].t_far))
+            .collect();
+        for way in [Way::Chosen, Way::Tile, Way::Packet, Way::Wave] {
+            let mut tracer = Tracer::new(());
+            let (mut hits, mut blocked) = (vec![Hit::MISS; rays.len()], vec![9; rays.len()]);
+            scene.closest_hits_by(&stream, &mut hits, way, &mut tracer);
+            scene.occluded_stream_by(&stream, &mut blocked, way, &mut tracer);
+            for ((&i, got), blocked) in order.iter().zip(hits).zip(blocked) {
+                assert_eq!(bits(got), bits(want[i]), "{way:?}: {got:?}, {:?}: {:?}", want[i], rays[i]);
+                let hits = want[i].primitive != PrimitiveId::NONE;
+                assert_eq!(blocked, u8::from(hits), "{way:?}: {:?}: {:?}", want[i], rays[i]);
+            }
+        }
+    }
+}
+
+fn compare_packet(scene: &Scene, mut rays: [Ray; 8], want: [Hit; 8], active: u32, traversal: &mut Traversal) {
+    // Lanes without work may hold anything.
+    let number = want.iter().map(|hit| hit.primitive.0 as usize % 5).sum::<usize>();
+    for (lane, ray) in rays.iter_mut().enumerate().filter(|&(lane, _)| active >> lane & 1 == 0) {
+        let rubbish =
+            [f32::NAN, f32::INFINITY, -1.0, f32::NAN, f32::NAN][(lane + active as usize + number) % 5];
+        *ray = Ray::new(Vec3::splat(rubbish), Vec3::splat(-rubbish), rubbish, rubbish);
+    }
+    let packet = packet(&rays);
+    let mask = <Mask8 as packlight::simd::Mask>::from_bitmask(active);
+    let got = scene.closest_hit_packet(&packet, mask, traversal);
+    let blocked = scene.occluded_packet(&packet, mask, traversal);
+    for lane in 0..8 {
+        let hit = Hit {
+            t: got.t.lane(lane),
+            u: got.u.lane(lane),
+            v: got.v.lane(lane),
+            primitive: PrimitiveId(packlight::simd::Bits::lane(got.primitive, lane)),
+        };
+        let want = if active >> lane & 1 == 0 { Hit::MISS } else { want[lane] };
+        assert_eq!(bits(hit), bits(want), "lane {lane} of {active:08b}: {hit:?}, {want:?}: {rays:?}");
+        assert_eq!(
+            blocked.lane(lane),
+            want.primitive != PrimitiveId::NONE,
+            "lane {lane} of {active:08b}: {rays:?}"
+        );
+    }
+}
+
+/// `count` rays of each kind at a scene.
+fn check(name: &str, description: &SceneDescription, count: usize) -> Seen {
+    let scene = compile(description).expect("the scene compiles");
+    let rays = rays_at(&targets(description), count, &mut Random::new(count as u64));
+    let seen = agree(&scene, &rays);
+    println!("{name}: {seen:?}");
+    seen
+}
+
+#[test]
+fn a_small_soup() {
+    let seen = check("soup", &scenes::soup(800), 1500);
+    assert!(seen.hits * 4 > seen.rays, "{seen:?}");
+}
+
+#[test]
+fn ties_go_to_the_lowest_number() {
+    let description = scenes::quads();
+    let seen = check("quads", &description, 1500);
+    assert!(seen.hits * 10 > seen.rays, "{seen:?}");
+    // Every quad is there three times; the first to come wins.
+    let scene = compile(&description).unwrap();
+    let third = (description.shapes.len() / 3 * 2) as u32;
+    let mut hits = 0;
+    for i in 0..200 {
+        let org = Vec3::new(0.05 * (i % 20) as f32 + 0.01, 0.1 * (i / 20) as f32 + 0.03, 5.0);
+        let hit = scene.closest_hit(&Ray::new(org, -Vec3::Z, 0.0, f32::INFINITY), &mut Traversal::new(()));
+        if hit.primitive != PrimitiveId::NONE {
+            assert!(hit.primitive.0 < third, "{hit:?}");
+            hits += 1;
+        }
+    }
+    assert!(hits > 100);
+}
+
+#[test]
+fn spheres_disks_cylinders_and_triangles() {
+    let seen = check("mixed", &scenes::mixed(400), 1500);
+    assert!(seen.hits * 4 > seen.rays, "{seen:?}");
+}
+
+#[test]
+fn a_packet_beside_a_plane_of_a_box_does_not_lose_it() {
+    // The ray of lane 0 runs in the plane x = 1, where the box begins, with the direction −0; the others
+    // come from the right side of it, and their finite reciprocals must not speak for the infinite one.
+    let description = scenes::fence();
+    let scene = compile(&description).unwrap();
+    for sign in [1.0f32, -1.0] {
+        for axis in 0..3 {
+            for plane in [1.0f32, 2.0, -1.0, -2.0] {
+                for zero in [0.0f32, -0.0] {
+                    let rays: Vec<Ray> = (0..8)
+                        .map(|lane| {
+                            let (mut org, mut dir) = (Vec3::splat(1.5), Vec3::splat(-sign));
+                            org[(axis + 1) % 3] = 5.0 * sign;
+                            org[(axis + 2) % 3] = if lane % 2 == 0 { 1.5 } else { 1.25 };
+                            org[axis] = plane;
+                            dir[(axis + 2) % 3] *= 1e-3;
+                            dir[axis] = if lane == 0 { zero } else { -sign * lane as f32 * 0.125 };
+                            Ray::new(org, dir, 0.0, f32::INFINITY)
+                        })
+                        .collect();
+                    agree(&scene, &rays);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_bunny() {
+    if let Some(path) = shared("meshes/stanford-bunny.obj") {
+        let seen = check("bunny", &scenes::read(&path), 40);
+        assert!(seen.hits * 4 > seen.rays, "{seen:?}");
+    }
+}
+
+#[test]
+fn awkward_meshes() {
+    let Some(folder) = shared("awkward") else { return };
+    let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    for path in files.iter().filter(|path| path.extension().is_some_and(|e| e == "ply")) {
+        let description = scenes::read(path);
+        let triangles = scenes::triangles(&description);
+        let count = (2_500_000 / (triangles + 1)).clamp(6, 400);
+        check(&path.file_name().unwrap().to_string_lossy(), &description, count);
+    }
+}
+
+#[test]
+fn an_empty_scene_is_never_hit() {
+    let seen = check("empty", &SceneDescription::default(), 20);
+    assert_eq!(seen.hits, 0);
+}
+
+#[test]
+fn scenes_of_one() {
+    for (name, description) in
+        [("triangle", scenes::soup(1)), ("sphere", scenes::one_sphere()), ("two", scenes::soup(2))]
+    {
+        assert!(check(name, &description, 200).hits > 50);
+    }
+}
+
+#[test]
+fn a_thousand_equal_triangles() {
+    let description = scenes::equal(1000);
+    let seen = check("equal", &description, 150);
+    assert!(seen.hits > 100, "{seen:?}");
+    let scene = compile(&description).unwrap();
+    for ray in rays_at(&targets(&description), 150, &mut Random::new(1)) {
+        let hit = scene.closest_hit(&ray, &mut Traversal::new(()));
+        assert!(hit.primitive == PrimitiveId::NONE || hit.primitive == PrimitiveId(0), "{hit:?}");
+    }
+}
+
+#[test]
+fn triangles_without_area_are_never_hit() {
+    let seen = check("degenerate", &scenes::degenerate(), 100);
+    assert_eq!(seen.hits, 0);
+}
