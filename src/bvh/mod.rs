@@ -70,6 +70,9 @@ pub trait Leaves {
         hit: &mut Hitx8,
     );
 
+    /// Where the data of a slot's block begin, to be asked for ahead of time.
+    fn address(&self, slot: u32) -> *const u8;
+
     /// One ray against `count` slots at once: the lanes are primitives.
     fn intersect_block<const ANY: bool>(&self, first: u32, count: u32, ray: &Ray, hit: &mut Hit);
 

@@ -72,6 +72,12 @@ impl Child {
         self.0 as usize
     }
 
+    /// The first slot of a leaf.
+    #[inline]
+    pub(super) fn slot(self) -> u32 {
+        self.0 & (Self::LEAF - 1) >> 3
+    }
+
     #[inline]
     pub(super) fn word(self) -> u32 {
         self.0
@@ -90,7 +96,7 @@ impl Child {
         } else if self.0 & Self::LEAF == 0 {
             Kind::Inner(self.0)
         } else {
-            Kind::Leaf { first: self.0 & (Self::LEAF - 1) >> 3, count: (self.0 >> 28 & 7) + 1 }
+            Kind::Leaf { first: self.slot(), count: (self.0 >> 28 & 7) + 1 }
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Any rays, in order, each by the way that suits its neighbours.
 //!
 //! Every sixty-four rays are looked at before they are traced. Where they point into one octant and spread
-//! little, they go as a tile; the rest go as a wave. Nothing is known about where the rays come
+//! little, they go as a tile; occlusion rays that spread more go as packets; the rest go as a wave. Nothing is known about where the rays come
 //! from, and the answer does not depend on the way.
 
 use std::ops::Range;
@@ -12,8 +12,11 @@ use crate::simd::{LANES, Mask, Mask8, Real, Vec3x8, f32x8, u32x8};
 
 /// Rays that are judged together.
 const RUN: usize = PACKETS * LANES;
-/// Directions of a coherent run stay within a box around their middle of this size, in lengths of it.
-const SPREAD: f32 = 0.35;
+/// Runs up to this [`spread`] go as tiles.
+const TILE_SPREAD: f32 = 0.35;
+/// Occlusion rays up to this one go as packets: most are blocked after a few nodes, which a wave can't
+/// make up for its setting up.
+const PACKET_SPREAD: f32 = 1.2;
 
 /// Rays to be traced, and where their answers go.
 pub trait Stream {
@@ -70,8 +73,11 @@ impl Bvh {
     ) {
         let len = stream.len();
         let way_of = |stream: &S, start: usize| match way {
-            Way::Chosen if is_coherent(stream, start..(start + RUN).min(len)) => Way::Tile,
-            Way::Chosen => Way::Wave,
+            Way::Chosen => match spread(stream, start..(start + RUN).min(len)) {
+                Some(spread) if spread <= TILE_SPREAD => Way::Tile,
+                Some(spread) if ANY && spread <= PACKET_SPREAD => Way::Packet,
+                _ => Way::Wave,
+            },
             forced => forced,
         };
         // Runs that go the same way are traced as one, so that a wave is filled and drained once.
@@ -168,31 +174,28 @@ fn answer<const ANY: bool, S: Stream>(stream: &mut S, first: usize, active: Mask
     }
 }
 
-/// Do the rays of a run point the same way?
-fn is_coherent<S: Stream>(stream: &S, range: Range<usize>) -> bool {
+/// The diagonal of the box around the directions of a run, in lengths of its middle; `None` if they point
+/// into several octants.
+fn spread<S: Stream>(stream: &S, range: Range<usize>) -> Option<f32> {
     let (lowest, highest) = (f32x8::splat(f32::INFINITY), f32x8::splat(f32::NEG_INFINITY));
     let mut low = Vec3x8 { x: lowest, y: lowest, z: lowest };
     let mut high = Vec3x8 { x: highest, y: highest, z: highest };
     for first in range.step_by(LANES) {
         let (ray, active) = stream.packet(first);
-        if active.none() {
-            continue;
-        }
         low = Vec3x8::select(active, ray.dir.min(low), low);
         high = Vec3x8::select(active, ray.dir.max(high), high);
     }
     let axes = [(low.x, high.x), (low.y, high.y), (low.z, high.z)];
-    let (mut spread, mut length) = (0.0, 0.0);
+    let (mut diagonal, mut length) = (0.0, 0.0);
     for (low, high) in axes {
         let (low, high) = (low.reduce_min(), high.reduce_max());
-        let across = low < 0.0 && high > 0.0;
-        if across {
-            return false;
+        if low < 0.0 && high > 0.0 {
+            return None;
         }
-        spread += (high - low) * (high - low);
+        diagonal += (high - low) * (high - low);
         length += (high + low) * (high + low) * 0.25;
     }
-    spread <= SPREAD * SPREAD * length
+    Some((diagonal / length).sqrt())
 }
 
 impl Hit {

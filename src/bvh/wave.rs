@@ -20,7 +20,7 @@ use std::ops::Range;
 
 use super::{Bvh, Child, Kind, Leaves, Node, STACK, Stream, Tally};
 use crate::geometry::{Hit, Ray};
-use crate::simd::{Bits, Mask, Real, f32x8, sort_descending, u32x8};
+use crate::simd::{Bits, Mask, Real, f32x8, prefetch, sort_descending, u32x8};
 
 /// Rays in turn: fewer leave latency open, more leave the first-level cache.
 const SLOTS: usize = 16;
@@ -177,6 +177,7 @@ impl Bvh {
                 tally.node(1);
                 slot.step(&self.nodes[slot.child.index()]);
                 let leaf = usize::from(slot.child.is_leaf_or_absent());
+                ask_for(slot.child, &self.nodes, leaves);
                 at_node[still] = which;
                 at_leaf[leaves_waiting] = which;
                 still += 1 - leaf;
@@ -202,6 +203,7 @@ impl Bvh {
                         continue;
                     }
                 }
+                ask_for(slot.child, &self.nodes, leaves);
                 let leaf = usize::from(slot.child.is_leaf_or_absent());
                 at_node[nodes] = which;
                 at_leaf[waiting] = which;
@@ -211,4 +213,12 @@ impl Bvh {
             leaves_waiting = waiting;
         }
     }
+}
+
+/// Asks for a node or a block while other slots take their turn. An address is chosen, not a branch.
+#[inline]
+fn ask_for<L: Leaves>(child: Child, nodes: &[Node], leaves: &L) {
+    let node = nodes.as_ptr().wrapping_add(child.index()).cast();
+    let address = if child.is_leaf_or_absent() { leaves.address(child.slot()) } else { node };
+    prefetch::<5>(address);
 }

@@ -1,5 +1,7 @@
 //! What can be hit, in leaf order: eight triangles or spheres to a block, in columns.
 
+use rayon::prelude::*;
+
 use crate::bvh::{BLOCK, Hitx8, Leaves};
 use crate::geometry::{
     Canonical, Hit, PrimitiveId, Ray, RayLanes, Rayx8, Sphere, SphereLanes, Triangle, TriangleLanes,
@@ -59,6 +61,19 @@ fn row(rows: &[[f32; 8]; 3], lane: usize) -> glam::Vec3 {
 impl TriangleBlock {
     const EMPTY: Self = Self { v0: [[0.0; 8]; 3], e1: [[0.0; 8]; 3], e2: [[0.0; 8]; 3], id: [u32::MAX; 8] };
 
+    fn new(ids: &[u32], primitives: impl Fn(u32) -> Primitive) -> Self {
+        let mut block = Self::EMPTY;
+        for (lane, &id) in ids.iter().enumerate().filter(|&(_, &id)| id != u32::MAX) {
+            if let Primitive::Triangle(triangle) = primitives(id) {
+                set(&mut block.v0, lane, triangle.v0);
+                set(&mut block.e1, lane, triangle.e1);
+                set(&mut block.e2, lane, triangle.e2);
+                block.id[lane] = id;
+            }
+        }
+        block
+    }
+
     #[inline]
     fn triangle(&self, lane: usize) -> Triangle {
         Triangle { v0: row(&self.v0, lane), e1: row(&self.e1, lane), e2: row(&self.e2, lane) }
@@ -67,48 +82,49 @@ impl TriangleBlock {
 
 impl SphereBlock {
     const EMPTY: Self = Self { center: [[0.0; 8]; 3], radius: [0.0; 8], id: [u32::MAX; 8] };
+
+    fn new(ids: &[u32], primitives: impl Fn(u32) -> Primitive) -> Self {
+        let mut block = Self::EMPTY;
+        for (lane, &id) in ids.iter().enumerate().filter(|&(_, &id)| id != u32::MAX) {
+            if let Primitive::Sphere(sphere) = primitives(id) {
+                set(&mut block.center, lane, sphere.center);
+                block.radius[lane] = sphere.radius;
+                block.id[lane] = id;
+            }
+        }
+        block
+    }
+}
+
+impl Primitive {
+    fn class(&self) -> u8 {
+        match self {
+            Self::Triangle(_) => TRIANGLE,
+            Self::Sphere(_) => SPHERE,
+            Self::Canonical(_) => CANONICAL,
+        }
+    }
 }
 
 impl Primitives {
     /// Lays the primitives out. `slots` holds indices into `primitives`, `u32::MAX` for padding, in blocks
     /// of one class; the index is the primitive's id.
-    pub(super) fn new(slots: &[u32], primitives: impl Fn(u32) -> Primitive) -> Self {
-        let mut all = Self::default();
-        for block in slots.chunks(BLOCK) {
-            match primitives(block[0]) {
-                Primitive::Triangle(_) => all.triangles.push(TriangleBlock::EMPTY),
-                Primitive::Sphere(_) => all.spheres.push(SphereBlock::EMPTY),
-                Primitive::Canonical(_) => all.canonicals.extend([None; BLOCK]),
-            }
-            for (lane, &id) in block.iter().enumerate().filter(|&(_, &id)| id != u32::MAX) {
-                all.put(lane, id, primitives(id));
-            }
-        }
-        all
-    }
-
-    /// Puts a primitive into a lane of its class's last block.
-    fn put(&mut self, lane: usize, id: u32, primitive: Primitive) {
-        match primitive {
-            Primitive::Triangle(triangle) => {
-                if let Some(block) = self.triangles.last_mut() {
-                    set(&mut block.v0, lane, triangle.v0);
-                    set(&mut block.e1, lane, triangle.e1);
-                    set(&mut block.e2, lane, triangle.e2);
-                    block.id[lane] = id;
-                }
-            }
-            Primitive::Sphere(sphere) => {
-                if let Some(block) = self.spheres.last_mut() {
-                    set(&mut block.center, lane, sphere.center);
-                    block.radius[lane] = sphere.radius;
-                    block.id[lane] = id;
-                }
-            }
-            Primitive::Canonical(surface) => {
-                let at = self.canonicals.len() - BLOCK + lane;
-                self.canonicals[at] = Some((surface, id));
-            }
+    pub(super) fn new(slots: &[u32], primitives: impl Fn(u32) -> Primitive + Sync) -> Self {
+        let class = |block: &[u32]| primitives(block[0]).class();
+        let blocks: Vec<&[u32]> = slots.chunks(BLOCK).collect();
+        let (triangles, rest) = blocks.split_at(blocks.partition_point(|block| class(block) == TRIANGLE));
+        let (spheres, canonicals) = rest.split_at(rest.partition_point(|block| class(block) == SPHERE));
+        Self {
+            triangles: triangles.par_iter().map(|ids| TriangleBlock::new(ids, &primitives)).collect(),
+            spheres: spheres.par_iter().map(|ids| SphereBlock::new(ids, &primitives)).collect(),
+            canonicals: canonicals
+                .iter()
+                .flat_map(|ids| ids.iter())
+                .map(|&id| match (id != u32::MAX).then(|| primitives(id)) {
+                    Some(Primitive::Canonical(surface)) => Some((surface, id)),
+                    _ => None,
+                })
+                .collect(),
         }
     }
 
@@ -175,6 +191,11 @@ fn accept_single<const ANY: bool>(hit: &mut Hit, (t, u, v): (f32, f32, f32), id:
 }
 
 impl Leaves for Primitives {
+    #[inline]
+    fn address(&self, slot: u32) -> *const u8 {
+        self.triangles.as_ptr().wrapping_add(slot as usize / BLOCK).cast()
+    }
+
     #[inline]
     fn intersect_packet<const ANY: bool>(
         &self,

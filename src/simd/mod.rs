@@ -12,6 +12,7 @@ pub mod cpu;
 mod float;
 mod integer;
 mod mask;
+mod prefetch;
 mod real;
 mod sort;
 #[cfg(test)]
@@ -21,6 +22,7 @@ mod vector;
 pub use float::{f32x8, transpose};
 pub use integer::u32x8;
 pub use mask::Mask8;
+pub use prefetch::prefetch;
 pub use real::{Bits, Mask, Real};
 pub use sort::sort_descending;
 pub use vector::{Vec3x8, Vector3, vector3};
