@@ -6,7 +6,7 @@
 
 use super::Node;
 use crate::geometry::{Rayx8, aabb};
-use crate::simd::{Mask8, Real, f32x8, transpose};
+use crate::simd::{Mask8, Real, f32x8, transpose, vector3};
 
 /// Beams in lanes, all into one octant.
 pub(super) struct Beam {
@@ -97,7 +97,7 @@ impl Beam {
 
     /// Rows of the planes met first, and of the others.
     #[inline]
-    pub(super) fn rows(&self) -> ([usize; 3], [usize; 3]) {
+    fn rows(&self) -> ([usize; 3], [usize; 3]) {
         (self.near_rows, self.near_rows.map(|row| (row + 3) % 6))
     }
 
@@ -129,5 +129,19 @@ impl Beam {
     #[inline]
     pub(super) fn beams(&self, node: &Node, place: usize, farthest: f32x8) -> Mask8 {
         self.meets(|row| f32x8::splat(node.bounds[row][place]), farthest).0
+    }
+
+    /// The rays of a packet within the beam that enter a child before `t_far`: the exact test; lanes are
+    /// rays.
+    #[inline]
+    pub(super) fn rays(&self, node: &Node, place: usize, ray: &Rayx8, t_far: f32x8) -> Mask8 {
+        let (near, far) = self.rows();
+        let plane = |row: usize| f32x8::splat(node.bounds[row][place]);
+        let near = vector3(plane(near[0]), plane(near[1]), plane(near[2]));
+        let far = vector3(plane(far[0]), plane(far[1]), plane(far[2]));
+        let near = (near - ray.org) * ray.rdir;
+        let far = ((far - ray.org) * ray.rdir).scale(f32x8::splat(aabb::WIDEN));
+        let low = near.z.max(near.y.max(near.x.max(ray.t_near)));
+        low.le(far.z.min(far.y.min(far.x.min(t_far))))
     }
 }

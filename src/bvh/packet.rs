@@ -7,7 +7,7 @@
 
 use super::{Bvh, Child, Hitx8, Kind, Leaves, Node, Tally, Traversal, beam::Beam};
 use crate::geometry::{Rayx8, aabb};
-use crate::simd::{Mask, Mask8, Real, Vector3, f32x8, vector3};
+use crate::simd::{Mask, Mask8, Real, Vector3, f32x8};
 
 impl Bvh {
     /// Traces the `active` rays of a packet; `hit` holds their limits in `t` and receives what is found.
@@ -75,19 +75,11 @@ fn enter_together(
 ) -> usize {
     let (candidates, enters) = beam.children(node, farthest);
     let (mut candidates, enters) = (candidates.to_bitmask(), enters.to_array());
-    let (near_rows, far_rows) = beam.rows();
     let mut count = 0;
     while candidates != 0 {
         let place = candidates.trailing_zeros() as usize;
         candidates &= candidates - 1;
-        let plane = |row: usize| f32x8::splat(node.bounds[row][place]);
-        let near = vector3(plane(near_rows[0]), plane(near_rows[1]), plane(near_rows[2]));
-        let far = vector3(plane(far_rows[0]), plane(far_rows[1]), plane(far_rows[2]));
-        let (near, far) =
-            ((near - ray.org) * ray.rdir, ((far - ray.org) * ray.rdir).scale(f32x8::splat(aabb::WIDEN)));
-        let low = near.z.max(near.y.max(near.x.max(ray.t_near)));
-        let high = far.z.min(far.y.min(far.x.min(t_far)));
-        if low.le(high).any() {
+        if beam.rays(node, place, ray, t_far).any() {
             insert(stack, count, (node.children[place], enters[place]));
             count += 1;
         }

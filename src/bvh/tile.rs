@@ -5,8 +5,8 @@
 //! rays themselves test its box. A step that a packet would take eight times is so taken once.
 
 use super::{Bvh, Child, Hitx8, Kind, Leaves, Node, Tally, Traversal, beam::Beam};
-use crate::geometry::{Rayx8, aabb};
-use crate::simd::{Mask, Mask8, Real, f32x8, vector3};
+use crate::geometry::Rayx8;
+use crate::simd::{Mask, Mask8, Real, f32x8};
 
 /// Packets in a tile.
 pub(super) const PACKETS: usize = 8;
@@ -109,21 +109,13 @@ fn rays_enter(
     hits: &[Hitx8; PACKETS],
     mask: u32,
 ) -> u32 {
-    let (near, far) = beams.rows();
-    let plane = |row: usize| f32x8::splat(node.bounds[row][place]);
-    let near = vector3(plane(near[0]), plane(near[1]), plane(near[2]));
-    let far = vector3(plane(far[0]), plane(far[1]), plane(far[2]));
     let mut entered = 0;
     let mut left = mask;
     while left != 0 {
         let packet = left.trailing_zeros() as usize;
         left &= left - 1;
-        let ray = &packets[packet];
-        let near = (near - ray.org) * ray.rdir;
-        let far = ((far - ray.org) * ray.rdir).scale(f32x8::splat(aabb::WIDEN));
-        let low = near.z.max(near.y.max(near.x.max(ray.t_near)));
-        let high = far.z.min(far.y.min(far.x.min(hits[packet].t)));
-        entered |= u32::from(low.le(high).any()) << packet;
+        let rays = beams.rays(node, place, &packets[packet], hits[packet].t);
+        entered |= u32::from(rays.any()) << packet;
     }
     entered
 }
