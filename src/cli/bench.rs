@@ -1,6 +1,5 @@
 //! `packlight bench`: how fast rays are traced, the scene's own or those of a file.
 
-mod measure;
 mod row;
 
 use std::{fs, path::PathBuf, sync::Arc};
@@ -15,10 +14,11 @@ use super::{
     threads,
 };
 use crate::{
+    bvh::Way,
     compile::{Scene, compile},
     geometry::ray_file::{RayFile, encode},
     load::load_mesh,
-    render::{Query, RayClass, ray_classes},
+    render::{Query, RayClass, measure, ray_classes},
     scene::{Geometry, Material, MaterialIndex, SceneDescription, Shape},
 };
 use row::{Build, Row};
@@ -105,7 +105,8 @@ impl Arguments {
         if (packets.hits, packets.t_sum.to_bits()) != (singles.hits, singles.t_sum.to_bits()) {
             warn_of(format!("{}: packets and single rays differ; please report it", class.name));
         }
-        row.compare(singles, measure::count_packets(scene, class), measure::count_singles(scene, class));
+        let counts = measure::count_packets(scene, class, Way::Chosen);
+        row.compare(singles, counts, measure::count_singles(scene, class));
         console::print(&row.to_string())
     }
 

@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::{
     console,
     failure::Failure,
+    memory,
     overrides::IntegratorName,
     quantity::{grouped, mebibytes, time},
     source::Source,
@@ -52,6 +53,10 @@ struct Info {
     bvh_bytes: u64,
     bvh_seconds: f64,
     load_seconds: f64,
+    /// The most memory the program has had, the description of the scene included; absent where the system
+    /// does not say.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    peak_memory_bytes: Option<u64>,
     width: u32,
     height: u32,
     samples_per_pixel: u32,
@@ -86,6 +91,7 @@ impl Info {
             bvh_bytes: summary.bvh_bytes,
             bvh_seconds: summary.bvh_time.as_secs_f64(),
             load_seconds: load_time.as_secs_f64(),
+            peak_memory_bytes: memory::peak(),
             width: sensor.film.width,
             height: sensor.film.height,
             samples_per_pixel: sensor.sampler.sample_count,
@@ -126,6 +132,11 @@ impl fmt::Display for Info {
             ("lights", grouped(self.lights.into())),
             ("BVH", format!("{} nodes, {}", grouped(self.bvh_nodes), mebibytes(self.bvh_bytes))),
             ("time", format!("load {}, BVH {}", seconds(self.load_seconds), seconds(self.bvh_seconds))),
+            (
+                "memory",
+                self.peak_memory_bytes
+                    .map_or("unknown".into(), |bytes| format!("{} at the peak", mebibytes(bytes))),
+            ),
             ("film", format!("{} x {}", self.width, self.height)),
             ("samples", format!("{} a pixel, seed {}", self.samples_per_pixel, self.seed)),
             ("sensor", sensor),
@@ -164,5 +175,6 @@ mod tests {
         assert_eq!(json["load_seconds"], 0.005);
         assert_eq!(json["looking"], serde_json::json!([0.0, 0.0, 1.0]));
         assert!(json["max_depth"].is_null());
+        assert_eq!(json["peak_memory_bytes"].is_u64(), memory::peak().is_some());
     }
 }

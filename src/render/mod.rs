@@ -8,6 +8,7 @@ mod camera_rays;
 mod columns;
 mod direct;
 mod integrator;
+pub mod measure;
 mod path;
 mod ray_classes;
 mod reference;

@@ -4,11 +4,13 @@ use std::{fmt, time::Duration};
 
 use serde::Serialize;
 
-use super::measure::{Counts, Timed};
 use crate::{
     cli::quantity::{counted, grouped, mebibytes, mega_per_second, time},
     compile::Summary,
-    render::{Query, RayClass},
+    render::{
+        Query, RayClass,
+        measure::{Counts, Timed},
+    },
 };
 
 /// A class of rays. Field names are the keys of `--json`; the first five are what other programs that

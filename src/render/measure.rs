@@ -1,4 +1,8 @@
-//! Rays through a scene, timed: from the array of rays to the array of results and nothing else.
+//! A class of rays through a scene, timed or counted.
+//!
+//! Timed is the way from the array of rays to the array of results and nothing else, on the current rayon
+//! pool. Counting is not timed. Both hand out the rays in the same chunks, so what is counted is what was
+//! timed, however many threads there are.
 
 use std::time::{Duration, Instant};
 
@@ -8,36 +12,39 @@ use crate::{
     bvh::{Tally, Tracer, Traversal, Way},
     compile::Scene,
     geometry::{Hit, PrimitiveId, Ray32},
-    render::{Query, RayClass},
     simd::LANES,
 };
+
+use super::{Query, RayClass};
 
 /// Rays that a thread takes at a time.
 const CHUNK: usize = 4096;
 
 /// Results of the rays and the best time.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Timed {
-    pub(super) hits: u64,
+pub struct Timed {
+    /// Rays that hit, or are blocked.
+    pub hits: u64,
     /// Sum of the hits' t in the order of the rays; 0 for any-hit.
-    pub(super) t_sum: f64,
-    pub(super) best: Duration,
+    pub t_sum: f64,
+    /// Of the runs after the warm-up.
+    pub best: Duration,
 }
 
 /// What a traversal did.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Counts {
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
     /// Nodes that rays were tested against, summed over rays.
-    pub(super) nodes: u64,
+    pub nodes: u64,
     /// Primitives likewise.
-    pub(super) primitives: u64,
+    pub primitives: u64,
     /// Tests of either that were run, however many rays took part.
-    tests: u64,
+    pub tests: u64,
 }
 
 impl Counts {
     /// The share of lanes that took part, if each test was eight wide.
-    pub(super) fn lane_use(&self) -> f64 {
+    pub fn lane_use(&self) -> f64 {
         let lanes = self.tests * LANES as u64;
         if lanes == 0 { 0.0 } else { (self.nodes + self.primitives) as f64 / lanes as f64 }
     }
@@ -63,16 +70,16 @@ impl Tally for Counts {
     }
 }
 
-/// Times the fast way.
-pub(super) fn packets(scene: &Scene, class: &RayClass, repeat: u32) -> Timed {
+/// Times the fast way: the best of `repeat` runs after a warm-up.
+pub fn packets(scene: &Scene, class: &RayClass, repeat: u32) -> Timed {
     match class.query {
         Query::Closest => closest(class, repeat, |rays, hits| scene.closest_hits(rays, hits)),
         Query::Any => any(class, repeat, |rays, blocked| scene.occluded_stream(rays, blocked)),
     }
 }
 
-/// Times one ray at a time.
-pub(super) fn singles(scene: &Scene, class: &RayClass, repeat: u32) -> Timed {
+/// Times one ray at a time, from the scalar kernels.
+pub fn singles(scene: &Scene, class: &RayClass, repeat: u32) -> Timed {
     match class.query {
         Query::Closest => closest(class, repeat, |rays, hits| {
             let mut traversal = Traversal::new(());
@@ -89,16 +96,16 @@ pub(super) fn singles(scene: &Scene, class: &RayClass, repeat: u32) -> Timed {
     }
 }
 
-/// Counts what the fast way does, untimed.
-pub(super) fn count_packets(scene: &Scene, class: &RayClass) -> Counts {
+/// Counts what a way through the tree does; [`Way::Chosen`] is what [`packets`] times.
+pub fn count_packets(scene: &Scene, class: &RayClass, way: Way) -> Counts {
     count(class, |rays, tracer| match class.query {
-        Query::Closest => scene.closest_hits_by(rays, &mut vec![Hit::MISS; rays.len()], Way::Chosen, tracer),
-        Query::Any => scene.occluded_stream_by(rays, &mut vec![0; rays.len()], Way::Chosen, tracer),
+        Query::Closest => scene.closest_hits_by(rays, &mut vec![Hit::MISS; rays.len()], way, tracer),
+        Query::Any => scene.occluded_stream_by(rays, &mut vec![0; rays.len()], way, tracer),
     })
 }
 
-/// Counts what single rays do, untimed.
-pub(super) fn count_singles(scene: &Scene, class: &RayClass) -> Counts {
+/// Counts what single rays do.
+pub fn count_singles(scene: &Scene, class: &RayClass) -> Counts {
     count(class, |rays, tracer| {
         let traversal = &mut tracer.traversal;
         for ray in rays {
