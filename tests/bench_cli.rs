@@ -130,18 +130,77 @@ fn rays_that_cannot_be_traced_are_counted_misses() {
 }
 
 #[test]
+fn no_ray_makes_it_stumble() {
+    let folder = folder("extreme");
+    let mesh = write(&folder, "a.obj", TRIANGLE);
+    // Every kind of number in every place, in turn: whole tiles of them, and a rest.
+    let numbers = [
+        f32::NAN,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+        f32::MAX,
+        f32::MIN,
+        f32::MIN_POSITIVE,
+        1e-45,
+        0.0,
+        -0.0,
+        1.0,
+    ];
+    let mut strange = vec![HIT];
+    for place in 0..8 {
+        for number in numbers {
+            strange.push(std::array::from_fn(|i| if i == place { number } else { HIT[i] }));
+            strange.push(std::array::from_fn(|i| if i == place { HIT[i] } else { number }));
+        }
+    }
+    let file = write(&folder, "a.rays", rays(&strange));
+    let hopeless = write(&folder, "b.rays", rays(&[[f32::NAN; 8]; 65]));
+    for mesh in [mesh.as_str(), "gen:soup:1k"] {
+        for query in ["closest", "any"] {
+            let run = |file: &str| {
+                lines(&["--mesh", mesh, "--rays", file, "--query", query, "--repeat", "1", "--json"])
+                    .remove(0)
+            };
+            let line = run(&file);
+            let number = |key: &str| line[key].as_u64().unwrap_or_else(|| panic!("{key}: {line}"));
+            assert_eq!(number("rays"), strange.len() as u64);
+            assert!(number("invalid") > 50 && number("hits") <= number("rays") - number("invalid"), "{line}");
+            assert!(line["t_sum"].as_f64().is_some_and(f64::is_finite), "{line}");
+            let line = run(&hopeless);
+            assert_eq!((&line["hits"], &line["invalid"]), (&0.into(), &65.into()), "{line}");
+        }
+    }
+}
+
+#[test]
 fn bad_input_is_told_and_never_a_panic() {
     let folder = folder("bad");
     let mesh = write(&folder, "a.obj", TRIANGLE);
     let good = write(&folder, "good.rays", rays(&[HIT]));
     let cut = write(&folder, "cut.rays", &rays(&[HIT])[..31]);
+    let cut_later = write(&folder, "cut-later.rays", [rays(&[HIT]), vec![0]].concat());
     let empty = write(&folder, "empty.rays", "");
+    let nothing = write(&folder, "nothing.ply", "");
     refused(&["--mesh", &mesh, "--rays", "no-such.rays"], 1, "no-such.rays");
     refused(&["--mesh", &mesh, "--rays", &cut], 1, "31 bytes are not a whole number of rays");
+    refused(&["--mesh", &mesh, "--rays", &cut_later], 1, "33 bytes are not a whole number of rays");
     refused(&["--mesh", &mesh, "--rays", &empty], 1, "no rays");
+    refused(&["--mesh", &mesh, "--rays", &folder.display().to_string()], 1, "bad");
     refused(&["--mesh", "no-such.obj", "--rays", &good], 1, "no-such.obj");
     refused(&["--mesh", "gen:foo:10", "--rays", &good], 1, "no mesh of the kind `foo`");
-    refused(&["--mesh", "gen:soup:0", "--rays", &good], 1, "expected a number of triangles");
+    refused(&["--mesh", &nothing, "--rays", &good], 1, "nothing.ply");
+    refused(&["--mesh", "gen:", "--rays", &good], 1, "no mesh of the kind ``");
+    refused(&["--mesh", "gen:soup", "--rays", &good], 1, "how many triangles?");
+    for count in ["0", "0k", "-5", "1.5M", "1e6", "many", ""] {
+        let mesh = format!("gen:soup:{count}");
+        refused(&["--mesh", &mesh, "--rays", &good], 1, "expected a number of triangles");
+    }
+    for count in ["101M", "99999999999", "99999999999999999999999999M"] {
+        refused(&["--mesh", &format!("gen:hair:{count}"), "--rays", &good], 1, "triangles are more than");
+    }
+    refused(&["--mesh", "gen:soup:10:x", "--rays", &good], 1, "the seed is not a whole number");
+    refused(&["gen:foo:10"], 1, "no mesh of the kind `foo`");
+    refused(&["gen:terrain:1000M"], 1, "are more than 100000000");
     refused(&["--mesh", "a.xml", "--rays", &good], 1, "a scene is not a mesh");
     refused(&["--mesh", "a.stl", "--rays", &good], 1, ".stl");
     refused(&["gen:hair:x"], 1, "expected a number of triangles");
@@ -151,6 +210,7 @@ fn bad_input_is_told_and_never_a_panic() {
     refused(&["--mesh", &mesh, "--rays", &good, "--threads", "0"], 2, "--threads");
     refused(&[&mesh, "--mesh", &mesh, "--rays", &good], 2, "cannot be used with");
     refused(&[], 2, "SCENE");
+    refused(&[&mesh, "--save-rays", &good], 1, "can't write rays into");
 }
 
 #[test]
