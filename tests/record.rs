@@ -21,7 +21,7 @@ use std::fs;
 
 use book::Book;
 use compared::{Class, Compared};
-use fit::Fit;
+use fit::{Fit, Growth};
 use machine::Machine;
 use row::{Row, Table};
 
@@ -114,17 +114,26 @@ fn a_logarithm_is_a_straight_line() {
     let fit = fit(|n| 1.5 + 0.5 * n.log2());
     assert!((fit.a - 1.5).abs() < 1e-9 && (fit.b - 0.5).abs() < 1e-9, "{fit:?}");
     assert!((fit.r2 - 1.0).abs() < 1e-9 && (fit.last_step - 1.0).abs() < 1e-9, "{fit:?}");
-    assert!(fit.is_logarithmic());
+    assert_eq!(fit.growth(), Growth::Logarithm);
 }
 
 #[test]
 fn roots_are_not_taken_for_logarithms() {
     for exponent in [0.15, 0.2, 1.0 / 3.0, 0.5] {
         let fit = fit(|n| n.powf(exponent));
-        assert!(!fit.is_logarithmic(), "{exponent}: {fit:?}");
+        assert_eq!(fit.growth(), Growth::Power, "{exponent}: {fit:?}");
+        assert!((fit.exponent - exponent).abs() < 1e-9, "{exponent}: {fit:?}");
     }
     assert!((fit(|n| n.powf(0.2)).last_step - 1.75).abs() < 0.01);
     assert!((fit(|n| n.powf(1.0 / 3.0)).last_step - 2.25).abs() < 0.01);
+}
+
+#[test]
+fn a_line_that_bends_is_no_power() {
+    // Camera rays at a sphereflake.
+    let points = [(320.0, 3.02), (9_920.0, 3.3), (99_200.0, 3.9), (1_049_600.0, 4.57), (9_996_800.0, 5.46)];
+    let fit = Fit::of(&points).expect("five points");
+    assert_eq!(fit.growth(), Growth::Bent, "{fit:?}");
 }
 
 #[test]

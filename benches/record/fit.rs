@@ -10,10 +10,26 @@ pub(crate) struct Fit {
     /// Slope of the last step in mean slopes: 1 for a straight line, 1.75 for N^0.2 and 2.25 for N^(1/3) over
     /// four tenfold steps.
     pub(crate) last_step: f64,
+    /// The p of N^p in the last step: 1/ln N for log N itself, which is 0.067 from one million to ten.
+    pub(crate) exponent: f64,
 }
 
-/// The greatest [`Fit::last_step`] that still passes for log N.
-pub(crate) const STRAIGHT: f64 = 1.5;
+/// The greatest [`Fit::last_step`] that still passes for a straight line.
+const STRAIGHT: f64 = 1.5;
+/// The least [`Fit::exponent`] of a power, where the line is not straight.
+const POWER: f64 = 0.125;
+
+/// What grows so.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Growth {
+    /// A straight line over log N.
+    Logarithm,
+    /// A line that bends upwards, but no power of N: meshes of one kind that are not the same surface at every
+    /// size, as a sphereflake that gains balls, have such.
+    Bent,
+    /// A power of N.
+    Power,
+}
 
 impl Fit {
     /// Of points (N, nodes) in ascending order; fewer than four say nothing.
@@ -33,11 +49,18 @@ impl Fit {
             b,
             r2: covariance * covariance / (of_x * of_y),
             last_step: slope(before, last) / slope(first, last),
+            exponent: (last.1 / before.1).ln() / (last.0 / before.0).ln(),
         })
     }
 
-    /// Does the slope not rise with log N?
-    pub(crate) fn is_logarithmic(&self) -> bool {
-        self.last_step <= STRAIGHT
+    /// What the last step says.
+    pub(crate) fn growth(&self) -> Growth {
+        if self.last_step <= STRAIGHT {
+            Growth::Logarithm
+        } else if self.exponent < POWER {
+            Growth::Bent
+        } else {
+            Growth::Power
+        }
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::{
-    fit::{Fit, STRAIGHT},
+    fit::{Fit, Growth},
     floors::Floors,
     growth,
     row::{BUILD, Row, Table},
@@ -66,7 +66,8 @@ fn ratios(group: &[&Row], threads: usize) -> String {
         }
     }
     let floored = group.first().is_some_and(|row| row.table == Table::Peers);
-    let mut text = format!("| | {} | mean |{}\n", scenes.join(" | "), if floored { " floors |" } else { "" });
+    let mut text =
+        format!("| | {} | geometric mean |{}\n", scenes.join(" | "), if floored { " floors |" } else { "" });
     text += &format!("|{}\n", " --- |".repeat(scenes.len() + 2 + usize::from(floored)));
     for class in CLASSES.into_iter().chain([BUILD]) {
         let row = |scene: &&str| group.iter().find(|row| row.scene == **scene && row.class == class);
@@ -147,8 +148,13 @@ fn growth_claims(group: &[&Row]) -> String {
             ("one ray", (|row| row.single_nodes_per_ray) as fn(&Row) -> Option<f64>),
             ("as traced", |row| row.nodes_per_ray),
         ] {
-            if let Some(Fit { a, b, r2, last_step }) = Fit::of(&points(group, kind, class, nodes)) {
-                let verdict = if last_step <= STRAIGHT { "log N" } else { "faster than log N" };
+            if let Some(fit) = Fit::of(&points(group, kind, class, nodes)) {
+                let Fit { a, b, r2, last_step, exponent } = fit;
+                let verdict = match fit.growth() {
+                    Growth::Logarithm => "log N".to_owned(),
+                    Growth::Bent => format!("a little faster than log N, N^{exponent:.2} at the end"),
+                    Growth::Power => format!("N^{exponent:.2} at the end"),
+                };
                 let _ = writeln!(
                     text,
                     "- {kind}, {class}, {way}: nodes = {a:.2} + {b:.3} log₂ N (R² {r2:.3}, last step {last_step:.2} of \
@@ -160,15 +166,16 @@ fn growth_claims(group: &[&Row]) -> String {
     text
 }
 
-/// Nodes of one ray that grow faster than log N, a sentence each.
+/// Nodes of one ray that grow like a power of N, a sentence each. Rays that travel together share nodes, so
+/// those as traced are no cost of the tree.
 pub(crate) fn unfounded(rows: &[Row]) -> Vec<String> {
     let mut found = Vec::new();
     for group in groups(rows, Table::Growth) {
         for (kind, class) in growth::KINDS.iter().flat_map(|kind| growth::CLASSES.map(|class| (kind, class)))
         {
             let points = points(&group, kind, class, |row| row.single_nodes_per_ray);
-            if let Some(fit) = Fit::of(&points).filter(|fit| !fit.is_logarithmic()) {
-                found.push(format!("gen:{kind}, {class} rays: nodes grow faster than log N: {fit:?}"));
+            if let Some(fit) = Fit::of(&points).filter(|fit| fit.growth() == Growth::Power) {
+                found.push(format!("gen:{kind}, {class} rays: nodes grow like a power of N: {fit:?}"));
             }
         }
     }
