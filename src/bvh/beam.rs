@@ -5,13 +5,13 @@
 //! monotone, so a box that a ray of the beam enters is never culled.
 
 use super::Node;
-use crate::geometry::{Rayx8, aabb};
+use crate::geometry::{Pencils, Rayx8, aabb};
 use crate::simd::{Mask8, Real, f32x8, transpose, vector3};
 
 /// Beams in lanes, all into one octant.
 pub(super) struct Beam {
-    /// Rows of [`Node::bounds`] that the rays meet first.
-    near_rows: [usize; 3],
+    /// Where the rays point along each axis.
+    negative: [bool; 3],
     /// The origin that makes a near plane nearest.
     near_org: [f32x8; 3],
     /// The origin that makes a far plane farthest.
@@ -50,13 +50,29 @@ impl Beam {
         Self::new(org, rdir, range(|p| p.t_near).0)
     }
 
+    /// The directions of the beams, if all of them have one origin.
+    pub(super) fn pencils(&self) -> Option<Pencils> {
+        let origin = |axis: usize| {
+            let first = f32x8::splat(self.near_org[axis].lane(0));
+            let same = first.equal(self.near_org[axis]) & first.equal(self.far_org[axis]);
+            same.all().then(|| first.lane(0))
+        };
+        let org = glam::vec3(origin(0)?, origin(1)?, origin(2)?);
+        let one = f32x8::splat(1.0);
+        // Least and greatest in magnitude are each other's reciprocals.
+        let least =
+            vector3(self.rdir_greatest[0], self.rdir_greatest[1], self.rdir_greatest[2]).map(|r| one / r);
+        let greatest = vector3(self.rdir_least[0], self.rdir_least[1], self.rdir_least[2]).map(|r| one / r);
+        Some(Pencils::new(org, least.min(greatest), least.max(greatest)))
+    }
+
     /// One beam around all lanes, in all lanes.
     pub(super) fn around(&self) -> Self {
         let low = |x: f32x8| f32x8::splat(x.reduce_min());
         let high = |x: f32x8| f32x8::splat(x.reduce_max());
         let mut beam = Self { t_near: low(self.t_near), ..*self };
         for axis in 0..3 {
-            let negative = self.near_rows[axis] >= 3;
+            let negative = self.negative[axis];
             let (near, far) = (self.near_org[axis], self.far_org[axis]);
             let (least, greatest) = (self.rdir_least[axis], self.rdir_greatest[axis]);
             (beam.near_org[axis], beam.far_org[axis]) =
@@ -70,7 +86,7 @@ impl Beam {
     fn new(org: [Range; 3], rdir: [Range; 3], t_near: f32x8) -> Option<Self> {
         let zero = [f32x8::default(); 3];
         let mut beam = Self {
-            near_rows: [0; 3],
+            negative: [false; 3],
             near_org: zero,
             far_org: zero,
             rdir_least: zero,
@@ -81,11 +97,10 @@ impl Beam {
             let ((org_low, org_high), (low, high)) = (org[axis], rdir[axis]);
             let negative = high.lt(f32x8::zero());
             if negative.all() {
-                beam.near_rows[axis] = axis + 3;
+                beam.negative[axis] = true;
                 (beam.near_org[axis], beam.far_org[axis]) = (org_low, org_high);
                 (beam.rdir_least[axis], beam.rdir_greatest[axis]) = (high, low);
             } else if low.ge(f32x8::zero()).all() {
-                beam.near_rows[axis] = axis;
                 (beam.near_org[axis], beam.far_org[axis]) = (org_high, org_low);
                 (beam.rdir_least[axis], beam.rdir_greatest[axis]) = (low, high);
             } else {
@@ -95,20 +110,14 @@ impl Beam {
         Some(beam)
     }
 
-    /// Rows of the planes met first, and of the others.
+    /// Which lanes may enter their box, and a bound on where. `planes(axis)` gives the bounds that are met
+    /// first and last.
     #[inline]
-    fn rows(&self) -> ([usize; 3], [usize; 3]) {
-        (self.near_rows, self.near_rows.map(|row| (row + 3) % 6))
-    }
-
-    /// Which lanes may enter their box, and a bound on where. `planes(row)` gives the bounds of a row.
-    #[inline]
-    pub(super) fn meets(&self, planes: impl Fn(usize) -> f32x8, farthest: f32x8) -> (Mask8, f32x8) {
-        let (near_rows, far_rows) = self.rows();
+    pub(super) fn meets(&self, planes: impl Fn(usize) -> (f32x8, f32x8), farthest: f32x8) -> (Mask8, f32x8) {
         let (mut low, mut high) = (self.t_near, farthest);
         for axis in 0..3 {
-            let near = planes(near_rows[axis]) - self.near_org[axis];
-            let far = planes(far_rows[axis]) - self.far_org[axis];
+            let (near, far) = planes(axis);
+            let (near, far) = (near - self.near_org[axis], far - self.far_org[axis]);
             // 0·∞: a ray in the plane itself, which does not constrain. NaN is kept because it stands
             // on the right, and then loses against `low` and `high`.
             let near = (near * self.rdir_least[axis]).min(near * self.rdir_greatest[axis]);
@@ -122,26 +131,35 @@ impl Beam {
     /// The children of a node that a beam may enter; lanes are children, and so all lanes one beam.
     #[inline]
     pub(super) fn children(&self, node: &Node, farthest: f32) -> (Mask8, f32x8) {
-        self.meets(|row| f32x8::from(node.bounds[row]), f32x8::splat(farthest))
+        let planes = |axis: usize| {
+            let (near, far) = node.slabs(axis, self.negative[axis]);
+            (f32x8::from(*near), f32x8::from(*far))
+        };
+        self.meets(planes, f32x8::splat(farthest))
     }
 
     /// The beams that may enter a child; lanes are beams.
     #[inline]
     pub(super) fn beams(&self, node: &Node, place: usize, farthest: f32x8) -> Mask8 {
-        self.meets(|row| f32x8::splat(node.bounds[row][place]), farthest).0
+        self.meets(|axis| self.planes(node, place, axis), farthest).0
     }
 
     /// The rays of a packet within the beam that enter a child before `t_far`: the exact test; lanes are
     /// rays.
     #[inline]
     pub(super) fn rays(&self, node: &Node, place: usize, ray: &Rayx8, t_far: f32x8) -> Mask8 {
-        let (near, far) = self.rows();
-        let plane = |row: usize| f32x8::splat(node.bounds[row][place]);
-        let near = vector3(plane(near[0]), plane(near[1]), plane(near[2]));
-        let far = vector3(plane(far[0]), plane(far[1]), plane(far[2]));
+        let [x, y, z] = [0, 1, 2].map(|axis| self.planes(node, place, axis));
+        let (near, far) = (vector3(x.0, y.0, z.0), vector3(x.1, y.1, z.1));
         let near = (near - ray.org) * ray.rdir;
         let far = ((far - ray.org) * ray.rdir).scale(f32x8::splat(aabb::WIDEN));
         let low = near.z.max(near.y.max(near.x.max(ray.t_near)));
         low.le(far.z.min(far.y.min(far.x.min(t_far))))
+    }
+
+    /// The bounds of one child along an axis, in all lanes.
+    #[inline]
+    fn planes(&self, node: &Node, place: usize, axis: usize) -> (f32x8, f32x8) {
+        let (near, far) = node.slabs(axis, self.negative[axis]);
+        (f32x8::splat(near[place]), f32x8::splat(far[place]))
     }
 }

@@ -10,8 +10,11 @@
 mod beam;
 mod build;
 mod collapse;
+mod cost;
+mod entry;
 mod node;
 mod packet;
+mod run;
 mod single;
 mod stream;
 mod tile;
@@ -26,8 +29,8 @@ use wave::Wave;
 
 use glam::Vec3;
 
-use crate::geometry::{Hit, Ray, Rayx8};
-use crate::simd::{Mask8, f32x8, u32x8};
+use crate::geometry::{Hit, Pencils, PrimitiveId, Ray, Rayx8};
+use crate::simd::{Bits, Mask8, Real, f32x8, u32x8};
 
 /// Slots in a block. A leaf never crosses from one block into the next.
 pub const BLOCK: usize = 8;
@@ -42,8 +45,6 @@ pub struct Bvh {
 }
 
 /// Hits of a packet. `t` starts as the rays' `t_far`, `primitive` as [`PrimitiveId::NONE`]'s number.
-///
-/// [`PrimitiveId::NONE`]: crate::geometry::PrimitiveId::NONE
 #[derive(Clone, Copy, Debug)]
 pub struct Hitx8 {
     /// Distances; for an occlusion query −∞ where something was found.
@@ -54,6 +55,34 @@ pub struct Hitx8 {
     pub v: f32x8,
     /// Primitive numbers.
     pub primitive: u32x8,
+}
+
+impl Hitx8 {
+    /// Before anything is hit.
+    #[inline]
+    fn nothing(t_far: f32x8) -> Self {
+        Self { t: t_far, u: f32x8::zero(), v: f32x8::zero(), primitive: u32x8::splat(PrimitiveId::NONE.0) }
+    }
+
+    /// The same, with [`Hit::MISS`] in the lanes that hit nothing or are not active.
+    #[inline]
+    fn or_miss(&self, active: Mask8) -> Self {
+        let hit = active & !self.primitive.equal(u32x8::splat(PrimitiveId::NONE.0));
+        let none = Self::nothing(f32x8::splat(f32::INFINITY));
+        Self {
+            t: f32x8::select(hit, self.t, none.t),
+            u: f32x8::select(hit, self.u, none.u),
+            v: f32x8::select(hit, self.v, none.v),
+            primitive: u32x8::select(hit, self.primitive, none.primitive),
+        }
+    }
+
+    /// The hit of a lane.
+    #[inline]
+    fn lane(&self, i: usize) -> Hit {
+        let primitive = PrimitiveId(self.primitive.lane(i));
+        Hit { t: self.t.lane(i), u: self.u.lane(i), v: self.v.lane(i), primitive }
+    }
 }
 
 /// What is in the slots: the tree asks it to intersect a leaf's range.
@@ -70,11 +99,31 @@ pub trait Leaves {
         hit: &mut Hitx8,
     );
 
+    /// Eight packets, of which those in `mask` may hit something, against a leaf's
+    /// (first slot, count).
+    /// `pencils` are around them, if they come from one origin. Returns how many tests of a packet
+    /// against a primitive that took.
+    fn intersect_tile<const ANY: bool>(
+        &self,
+        leaf: (u32, u32),
+        packets: &[Rayx8; 8],
+        pencils: Option<&Pencils>,
+        mask: u32,
+        hits: &mut [Hitx8; 8],
+    ) -> u32;
+
     /// Where the data of a slot's block begin, to be asked for ahead of time.
     fn address(&self, slot: u32) -> *const u8;
 
-    /// One ray against `count` slots at once: the lanes are primitives.
-    fn intersect_block<const ANY: bool>(&self, first: u32, count: u32, ray: &Ray, hit: &mut Hit);
+    /// One ray, which `splat` puts into all lanes, against `count` slots at once: the lanes are primitives,
+    /// and each keeps its own nearest hit, as for a packet. More than what was asked for may be tested.
+    fn intersect_block<const ANY: bool>(
+        &self,
+        first: u32,
+        count: u32,
+        splat: impl Fn() -> Rayx8,
+        hit: &mut Hitx8,
+    );
 
     /// One ray, from the scalar kernels.
     fn intersect_single<const ANY: bool>(&self, first: u32, count: u32, ray: &Ray, hit: &mut Hit);

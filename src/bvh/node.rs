@@ -1,14 +1,14 @@
 //! Eight boxes and what is behind them.
 
 use crate::geometry::Aabb;
-use crate::simd::{Vec3x8, f32x8, vector3};
+use crate::simd::u32x8;
 
 /// Eight children: 256 bytes, four cache lines.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct Node {
-    /// Rows of bounds: min x y z, max x y z. An absent child has an empty box.
-    pub bounds: [[f32; 8]; 6],
+    /// For each axis the lower bounds, then the upper ones. An absent child has an empty box.
+    pub bounds: [[[f32; 8]; 2]; 3],
     /// What is behind each box.
     pub children: [Child; 8],
 }
@@ -103,23 +103,14 @@ impl Child {
 
 impl Node {
     /// No children.
-    pub const EMPTY: Self = Self {
-        bounds: [
-            [f32::INFINITY; 8],
-            [f32::INFINITY; 8],
-            [f32::INFINITY; 8],
-            [f32::NEG_INFINITY; 8],
-            [f32::NEG_INFINITY; 8],
-            [f32::NEG_INFINITY; 8],
-        ],
-        children: [Child::ABSENT; 8],
-    };
+    pub const EMPTY: Self =
+        Self { bounds: [[[f32::INFINITY; 8], [f32::NEG_INFINITY; 8]]; 3], children: [Child::ABSENT; 8] };
 
     /// Puts a child in its place.
     pub fn set(&mut self, place: usize, bounds: Aabb, child: Child) {
         for axis in 0..3 {
-            self.bounds[axis][place] = bounds.min[axis];
-            self.bounds[axis + 3][place] = bounds.max[axis];
+            self.bounds[axis][0][place] = bounds.min[axis];
+            self.bounds[axis][1][place] = bounds.max[axis];
         }
         self.children[place] = child;
     }
@@ -127,15 +118,21 @@ impl Node {
     /// The box of a child.
     #[inline]
     pub fn child_bounds(&self, place: usize) -> Aabb {
-        let row = |axis: usize| self.bounds[axis][place];
-        Aabb { min: glam::vec3(row(0), row(1), row(2)), max: glam::vec3(row(3), row(4), row(5)) }
+        let corner = |side: usize| glam::Vec3::from_array(self.bounds.map(|axis| axis[side][place]));
+        Aabb { min: corner(0), max: corner(1) }
     }
 
-    /// All eight boxes: (min, max).
+    /// The bounds along an axis: (met first, met last) by rays into its negative direction or not.
     #[inline]
-    pub fn lanes(&self) -> (Vec3x8, Vec3x8) {
-        let row = |axis: usize| f32x8::from(self.bounds[axis]);
-        (vector3(row(0), row(1), row(2)), vector3(row(3), row(4), row(5)))
+    pub(super) fn slabs(&self, axis: usize, negative: bool) -> (&[f32; 8], &[f32; 8]) {
+        let sides = &self.bounds[axis];
+        (&sides[usize::from(negative)], &sides[usize::from(!negative)])
+    }
+
+    /// What is behind the boxes, as words.
+    #[inline]
+    pub(super) fn words(&self) -> u32x8 {
+        u32x8::new(self.children.map(Child::word))
     }
 }
 

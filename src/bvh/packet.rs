@@ -5,7 +5,7 @@
 //! box that is left (lanes are rays). The first test never culls what the second would keep (see
 //! `beam`).
 
-use super::{Bvh, Child, Hitx8, Kind, Leaves, Node, Tally, Traversal, beam::Beam};
+use super::{Bvh, Child, Hitx8, Kind, Leaves, Node, Tally, Traversal, beam::Beam, cost::Cost};
 use crate::geometry::{Rayx8, aabb};
 use crate::simd::{Mask, Mask8, Real, Vector3, f32x8};
 
@@ -21,45 +21,67 @@ impl Bvh {
         hit: &mut Hitx8,
         traversal: &mut Traversal<T>,
     ) {
-        if self.nodes.is_empty() || active.none() {
-            return;
+        if let Some(root) = self.nodes.first() {
+            self.intersect_packet_from::<ANY, L, T>(root, leaves, (ray, active), hit, traversal);
+        }
+    }
+
+    /// The same from a node on, the root or an [entry](Bvh::entry). Returns what it cost.
+    pub(super) fn intersect_packet_from<const ANY: bool, L: Leaves, T: Tally>(
+        &self,
+        start: &Node,
+        leaves: &L,
+        (ray, active): (&Rayx8, Mask8),
+        hit: &mut Hitx8,
+        traversal: &mut Traversal<T>,
+    ) -> Cost {
+        let mut cost = Cost::PACKET;
+        if active.none() {
+            return cost;
         }
         let waiting = hit.t;
         // No box is entered before −∞: lanes without work fail every comparison by themselves.
         hit.t = f32x8::select(active, hit.t, f32x8::splat(f32::NEG_INFINITY));
         let beam = Beam::of_packet(ray, active);
         let Traversal { stack, tally } = traversal;
-        stack[0] = (Child::inner(0), f32::NEG_INFINITY);
-        let mut top = 1;
+        let mut top = 0;
+        let mut node = start;
         let mut farthest = hit.t.reduce_max();
-        while top > 0 {
-            top -= 1;
-            let (child, enter) = stack[top];
-            if enter > farthest {
-                continue;
-            }
-            match child.kind() {
-                Kind::Absent => {}
-                Kind::Inner(index) => {
-                    let node = &self.nodes[index as usize];
-                    tally.node(active.count());
-                    let below = &mut stack[top..];
-                    top += match &beam {
-                        Some(beam) => enter_together(node, ray, beam, hit.t, farthest, below),
-                        None => enter_apart(node, ray, hit.t, below),
-                    };
+        loop {
+            tally.node(active.count());
+            let below = &mut stack[top..];
+            let entered = match &beam {
+                Some(beam) => enter_together(node, ray, beam, hit.t, farthest, below),
+                None => enter_apart(node, ray, hit.t, below),
+            };
+            top += entered;
+            cost += Cost::PACKET_NODE + Cost::PACKET_CHILD * entered as u32;
+            // Leaves, until there is a node again.
+            node = loop {
+                if top == 0 {
+                    hit.t = f32x8::select(active, hit.t, waiting);
+                    return cost;
                 }
-                Kind::Leaf { first, count } => {
-                    tally.leaf(count, active.count());
-                    leaves.intersect_packet::<ANY>(first, count, ray, active, hit);
-                    farthest = hit.t.reduce_max();
-                    if ANY && farthest == f32::NEG_INFINITY {
-                        break;
+                top -= 1;
+                let (child, enter) = stack[top];
+                if enter > farthest {
+                    continue;
+                }
+                match child.kind() {
+                    Kind::Absent => {}
+                    Kind::Inner(index) => break &self.nodes[index as usize],
+                    Kind::Leaf { first, count } => {
+                        tally.leaf(count, active.count());
+                        cost += Cost::PACKET_TEST * count;
+                        leaves.intersect_packet::<ANY>(first, count, ray, active, hit);
+                        farthest = hit.t.reduce_max();
+                        if ANY && farthest == f32::NEG_INFINITY {
+                            top = 0;
+                        }
                     }
                 }
-            }
+            };
         }
-        hit.t = f32x8::select(active, hit.t, waiting);
     }
 }
 

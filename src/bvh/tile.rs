@@ -4,30 +4,29 @@
 //! of the eight packets against each box that is left (lanes are packets); only where a leaf hangs do the
 //! rays themselves test its box. A step that a packet would take eight times is so taken once.
 
-use super::{Bvh, Child, Hitx8, Kind, Leaves, Node, Tally, Traversal, beam::Beam};
+use super::{Bvh, Child, Hitx8, Kind, Leaves, Node, Tally, Traversal, beam::Beam, cost::Cost, run::PACKETS};
 use crate::geometry::Rayx8;
-use crate::simd::{Mask, Mask8, Real, f32x8};
+use crate::simd::{Mask, Real, f32x8};
 
-/// Packets in a tile.
-pub(super) const PACKETS: usize = 8;
+/// Up to so many packets, each tests a leaf's box with its rays.
+const FEW: u32 = 3;
 
 impl Bvh {
-    /// Traces a tile; `hits` as for [`Bvh::intersect_packet`]. Returns false, and has done nothing, if the
-    /// rays do not point into one octant.
+    /// Traces a tile; `hits` as for [`Bvh::intersect_packet`]. Returns what it cost; `None`, and it has done
+    /// nothing, if the rays do not point into one octant.
     pub(super) fn intersect_tile<const ANY: bool, L: Leaves, T: Tally>(
         &self,
         leaves: &L,
         packets: &[Rayx8; PACKETS],
         hits: &mut [Hitx8; PACKETS],
         traversal: &mut Traversal<T>,
-    ) -> bool {
-        let Some(beams) = Beam::of_packets(packets) else {
-            return false;
-        };
+    ) -> Option<Cost> {
+        let beams = Beam::of_packets(packets)?;
+        let mut cost = Cost::TILE;
         if self.nodes.is_empty() {
-            return true;
+            return Some(cost);
         }
-        let all = beams.around();
+        let (all, pencils) = (beams.around(), beams.pencils());
         let Traversal { stack, tally } = traversal;
         let mut farthest = f32x8::from_fn(|i| hits[i].t.reduce_max());
         let mut end = farthest.reduce_max();
@@ -50,13 +49,15 @@ impl Bvh {
                     let (candidates, enters) = all.children(node, end);
                     let enters = enters.to_array();
                     let mut candidates = candidates.to_bitmask();
+                    cost += Cost::TILE_NODE + Cost::TILE_CHILD * candidates.count_ones();
                     let bottom = top;
                     while candidates != 0 {
                         let place = candidates.trailing_zeros() as usize;
                         candidates &= candidates - 1;
                         let mut mask = mask & beams.beams(node, place, farthest).to_bitmask();
                         let child = node.children[place];
-                        if child.is_leaf() {
+                        // Planes are tested once for all packets: no box is worth it for more than a few.
+                        if child.is_leaf() && (pencils.is_none() || mask.count_ones() <= FEW) {
                             mask = rays_enter(node, place, &beams, packets, hits, mask);
                         }
                         if mask != 0 {
@@ -71,31 +72,23 @@ impl Bvh {
                     }
                 }
                 Kind::Leaf { first, count } => {
-                    let mut left = mask;
+                    let pencils = pencils.as_ref();
+                    let tests = leaves.intersect_tile::<ANY>((first, count), packets, pencils, mask, hits);
+                    tally.leaf(tests, 8);
+                    cost += Cost::TILE_LEAF + Cost::TILE_PLANES * count + Cost::PACKET_TEST * tests;
                     let mut limits = farthest.to_array();
-                    while left != 0 {
-                        let packet = left.trailing_zeros() as usize;
-                        left &= left - 1;
-                        tally.leaf(count, 8);
-                        let hit = &mut hits[packet];
-                        leaves.intersect_packet::<ANY>(
-                            first,
-                            count,
-                            &packets[packet],
-                            Mask8::splat(true),
-                            hit,
-                        );
-                        limits[packet] = hit.t.reduce_max();
+                    for packet in (0..PACKETS).filter(|packet| mask >> packet & 1 != 0) {
+                        limits[packet] = hits[packet].t.reduce_max();
                     }
                     farthest = f32x8::from(limits);
                     end = farthest.reduce_max();
                     if ANY && end == f32::NEG_INFINITY {
-                        return true;
+                        break;
                     }
                 }
             }
         }
-        true
+        Some(cost)
     }
 }
 

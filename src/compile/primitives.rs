@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::bvh::{BLOCK, Hitx8, Leaves};
 use crate::geometry::{
-    Canonical, Hit, PrimitiveId, Ray, RayLanes, Rayx8, Sphere, SphereLanes, Triangle, TriangleLanes,
+    Canonical, Hit, Pencils, PrimitiveId, Ray, RayLanes, Rayx8, Sphere, SphereLanes, Triangle, TriangleLanes,
 };
 use crate::simd::{Bits, Mask, Mask8, Real, Vector3, f32x8, u32x8, vector3};
 
@@ -72,6 +72,23 @@ impl TriangleBlock {
             }
         }
         block
+    }
+
+    #[inline]
+    fn lanes(&self) -> TriangleLanes<f32x8> {
+        let rows = |rows: &[[f32; 8]; 3]| vector3(rows[0].into(), rows[1].into(), rows[2].into());
+        TriangleLanes { v0: rows(&self.v0), e1: rows(&self.e1), e2: rows(&self.e2) }
+    }
+
+    /// A packet against the triangle in a lane.
+    #[inline]
+    fn intersect<const ANY: bool>(&self, lane: usize, ray: &Rayx8, active: Mask8, hit: &mut Hitx8) {
+        let splat = |rows| Vector3::splat(row(rows, lane));
+        let triangle = TriangleLanes { v0: splat(&self.v0), e1: splat(&self.e1), e2: splat(&self.e2) };
+        let (found, t, u, v) = triangle.intersect(&RayLanes { t_far: hit.t, ..*ray }, active);
+        if found.any() {
+            accept::<ANY>(hit, found, (t, u, v), || u32x8::splat(self.id[lane]));
+        }
     }
 
     #[inline]
@@ -145,6 +162,15 @@ impl Primitives {
         if hit.primitive == PrimitiveId::NONE { Hit::MISS } else { hit }
     }
 
+    /// A block that is not triangles: out of the way, and by value, so that the ray and the hits of those
+    /// that are stay in registers.
+    #[cold]
+    #[inline(never)]
+    fn intersect_rarely<const ANY: bool>(&self, first: u32, count: u32, ray: Rayx8, mut hit: Hitx8) -> Hitx8 {
+        self.intersect_packet::<ANY>(first, count, &ray, Mask8::first(1), &mut hit);
+        hit
+    }
+
     /// A slot's block: which class, which block of the class, and the first lane.
     #[inline]
     fn place(&self, slot: u32) -> (u8, usize, usize) {
@@ -160,23 +186,30 @@ impl Primitives {
     }
 }
 
-/// Records a packet's hits with one primitive, where they are closer or tie with a higher id.
+/// Records hits, where they are closer or tie with a higher id: of a packet with one primitive, or of one
+/// ray with several.
 #[inline]
-fn accept<const ANY: bool>(hit: &mut Hitx8, found: Mask8, t: f32x8, u: f32x8, v: f32x8, id: u32) {
+fn accept<const ANY: bool>(
+    hit: &mut Hitx8,
+    found: Mask8,
+    (t, u, v): (f32x8, f32x8, f32x8),
+    id: impl FnOnce() -> u32x8,
+) {
     if ANY {
         hit.t = f32x8::select(found, f32x8::splat(f32::NEG_INFINITY), hit.t);
         return;
     }
+    let id = id();
     let mut closer = found & t.lt(hit.t);
     let tie = found & t.equal(hit.t);
     if tie.any() {
-        let lower = hit.primitive.to_array().map(|other| id < other);
-        closer = closer | (tie & Mask8::from_array(lower));
+        let (id, other) = (id.to_array(), hit.primitive.to_array());
+        closer = closer | (tie & Mask8::from_array(std::array::from_fn(|i| id[i] < other[i])));
     }
     hit.t = f32x8::select(closer, t, hit.t);
     hit.u = f32x8::select(closer, u, hit.u);
     hit.v = f32x8::select(closer, v, hit.v);
-    hit.primitive = u32x8::select(closer, u32x8::splat(id), hit.primitive);
+    hit.primitive = u32x8::select(closer, id, hit.primitive);
 }
 
 /// Records a ray's hit in the same way.
@@ -210,16 +243,7 @@ impl Leaves for Primitives {
             let limited = RayLanes { t_far: hit.t, ..*ray };
             let zero = f32x8::zero();
             match class {
-                TRIANGLE => {
-                    let block = &self.triangles[block];
-                    let splat = |rows| Vector3::splat(row(rows, lane));
-                    let triangle =
-                        TriangleLanes { v0: splat(&block.v0), e1: splat(&block.e1), e2: splat(&block.e2) };
-                    let (found, t, u, v) = triangle.intersect(&limited, active);
-                    if found.any() {
-                        accept::<ANY>(hit, found, t, u, v, block.id[lane]);
-                    }
-                }
+                TRIANGLE => self.triangles[block].intersect::<ANY>(lane, ray, active, hit),
                 SPHERE => {
                     let block = &self.spheres[block];
                     let sphere = SphereLanes {
@@ -227,37 +251,63 @@ impl Leaves for Primitives {
                         radius: f32x8::splat(block.radius[lane]),
                     };
                     let (found, t) = sphere.intersect(&limited, active);
-                    accept::<ANY>(hit, found, t, zero, zero, block.id[lane]);
+                    accept::<ANY>(hit, found, (t, zero, zero), || u32x8::splat(block.id[lane]));
                 }
                 _ => {
                     if let Some((surface, id)) = &self.canonicals[block * BLOCK + lane] {
                         let (found, t) = surface.intersect(&limited, active);
-                        accept::<ANY>(hit, found, t, zero, zero, *id);
+                        accept::<ANY>(hit, found, (t, zero, zero), || u32x8::splat(*id));
                     }
                 }
             }
         }
     }
 
+    fn intersect_tile<const ANY: bool>(
+        &self,
+        (first, count): (u32, u32),
+        packets: &[Rayx8; 8],
+        pencils: Option<&Pencils>,
+        mask: u32,
+        hits: &mut [Hitx8; 8],
+    ) -> u32 {
+        let every = Mask8::splat(true);
+        let (Some(block), Some(pencils)) = (self.triangles.get(first as usize / BLOCK), pencils) else {
+            for packet in (0..8).filter(|packet| mask >> packet & 1 != 0) {
+                self.intersect_packet::<ANY>(first, count, &packets[packet], every, &mut hits[packet]);
+            }
+            return mask.count_ones() * count;
+        };
+        let planes = block.lanes().edge_planes(pencils.org());
+        let (lane, mut tests) = (first as usize % BLOCK, 0);
+        for lane in lane..lane + count as usize {
+            let mut left = mask & pencils.meet(&planes, lane).to_bitmask();
+            tests += left.count_ones();
+            while left != 0 {
+                let packet = left.trailing_zeros() as usize % 8;
+                left &= left - 1;
+                block.intersect::<ANY>(lane, &packets[packet], every, &mut hits[packet]);
+            }
+        }
+        tests
+    }
+
     #[inline]
-    fn intersect_block<const ANY: bool>(&self, first: u32, count: u32, ray: &Ray, hit: &mut Hit) {
-        let (class, block, lane) = self.place(first);
-        if class != TRIANGLE {
-            self.intersect_single::<ANY>(first, count, ray, hit);
+    fn intersect_block<const ANY: bool>(
+        &self,
+        first: u32,
+        count: u32,
+        splat: impl Fn() -> Rayx8,
+        hit: &mut Hitx8,
+    ) {
+        // The other triangles of the block are hit or missed as truly as the leaf's: no lane is masked.
+        let Some(block) = self.triangles.get(first as usize / BLOCK) else {
+            *hit = self.intersect_rarely::<ANY>(first, count, splat(), *hit);
             return;
-        }
-        let block = &self.triangles[block];
-        let rows = |rows: &[[f32; 8]; 3]| vector3(rows[0].into(), rows[1].into(), rows[2].into());
-        let triangles = TriangleLanes { v0: rows(&block.v0), e1: rows(&block.e1), e2: rows(&block.e2) };
-        let ray = RayLanes::<f32x8> { t_far: f32x8::splat(hit.t), ..RayLanes::splat(ray) };
-        let lanes = Mask8::first(lane + count as usize) & !Mask8::first(lane);
-        let (found, t, u, v) = triangles.intersect(&ray, lanes);
-        let mut found = found.to_bitmask();
-        while found != 0 {
-            let lane = found.trailing_zeros() as usize;
-            found &= found - 1;
-            accept_single::<ANY>(hit, (t.lane(lane), u.lane(lane), v.lane(lane)), block.id[lane]);
-        }
+        };
+        let ray = splat();
+        let (found, t, u, v) = block.lanes().intersect_all(&RayLanes { t_far: hit.t, ..ray });
+        accept::<ANY>(hit, found, (t, u, v), || u32x8::new(block.id));
     }
 
     #[inline]

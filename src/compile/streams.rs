@@ -7,7 +7,7 @@ use std::cell::RefCell;
 
 use super::Scene;
 use crate::bvh::{Stream, Tally, Tracer, Way};
-use crate::geometry::{Hit, Ray, Ray32, Rayx8};
+use crate::geometry::{Hit, Ray32, Rayx8};
 use crate::simd::{LANES, Mask8, Real};
 
 thread_local! {
@@ -44,11 +44,7 @@ impl Scene {
         tracer: &mut Tracer<T>,
     ) {
         assert_eq!(rays.len(), out.len(), "a hit for each ray");
-        self.trace::<false, _, T>(
-            &mut Slices { rays, take: |i: usize, hit: &Hit| out[i] = *hit },
-            way,
-            tracer,
-        );
+        self.trace::<false, _, T>(&mut Closest { rays, out }, way, tracer);
     }
 
     /// [`Scene::occluded_stream`] by a way of the caller's choice, counting what it does.
@@ -63,39 +59,64 @@ impl Scene {
         tracer: &mut Tracer<T>,
     ) {
         assert_eq!(rays.len(), out.len(), "an answer for each ray");
-        let take = |i: usize, hit: &Hit| out[i] = u8::from(*hit == Hit::BLOCKED);
-        self.trace::<true, _, T>(&mut Slices { rays, take }, way, tracer);
+        self.trace::<true, _, T>(&mut Occluded { rays, out }, way, tracer);
     }
 }
 
 /// Rays in an array, answers into another.
-struct Slices<'r, F> {
-    rays: &'r [Ray32],
-    take: F,
+struct Closest<'a> {
+    rays: &'a [Ray32],
+    out: &'a mut [Hit],
 }
 
-impl<F: FnMut(usize, &Hit)> Stream for Slices<'_, F> {
+impl Stream for Closest<'_> {
     fn len(&self) -> usize {
         self.rays.len()
     }
 
     #[inline]
-    fn ray(&self, index: usize) -> Option<Ray> {
-        let ray = &self.rays[index];
-        (ray.t_near <= ray.t_far).then(|| ray.ray())
-    }
-
-    #[inline]
     fn packet(&self, first: usize) -> (Rayx8, Mask8) {
-        let rays = &self.rays[first..self.rays.len().min(first + LANES)];
-        let packet = Ray32::packet(rays);
-        (packet, Mask8::first(rays.len()) & packet.t_near.le(packet.t_far))
+        packet(self.rays, first)
     }
 
     #[inline]
     fn answer(&mut self, index: usize, hit: &Hit) {
-        (self.take)(index, hit);
+        self.out[index] = *hit;
     }
+
+    #[inline]
+    fn answer_packet(&mut self, first: usize, hits: &[Hit]) {
+        self.out[first..first + hits.len()].copy_from_slice(hits);
+    }
+}
+
+/// The same for occlusion.
+struct Occluded<'a> {
+    rays: &'a [Ray32],
+    out: &'a mut [u8],
+}
+
+impl Stream for Occluded<'_> {
+    fn len(&self) -> usize {
+        self.rays.len()
+    }
+
+    #[inline]
+    fn packet(&self, first: usize) -> (Rayx8, Mask8) {
+        packet(self.rays, first)
+    }
+
+    #[inline]
+    fn answer(&mut self, index: usize, hit: &Hit) {
+        self.out[index] = u8::from(*hit == Hit::BLOCKED);
+    }
+}
+
+#[inline]
+fn packet(rays: &[Ray32], first: usize) -> (Rayx8, Mask8) {
+    let rays = &rays[first..rays.len().min(first + LANES)];
+    let packet = Ray32::packet(rays);
+    (packet, Mask8::first(rays.len()) & packet.t_near.le(packet.t_far))
 }
 
 #[cfg(test)]

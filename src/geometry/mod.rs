@@ -11,6 +11,7 @@
 pub mod aabb;
 mod canonical;
 mod offset;
+mod pencil;
 mod ray;
 pub mod ray_file;
 #[cfg(test)]
@@ -21,6 +22,7 @@ mod triangle;
 pub use aabb::Aabb;
 pub use canonical::{Canonical, CanonicalKind};
 pub use offset::{REACH, offset_origin};
+pub use pencil::{EdgePlanes, Pencils};
 pub use ray::{Hit, PrimitiveId, Ray, RayLanes, Rayx8};
 pub use ray_file::Ray32;
 pub use sphere::{Sphere, SphereLanes};

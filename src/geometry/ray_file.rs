@@ -10,7 +10,7 @@
 use glam::Vec3;
 
 use super::{Ray, RayLanes, Rayx8};
-use crate::simd::{LANES, f32x8, vector3};
+use crate::simd::{LANES, f32x8, transpose, vector3};
 
 /// Bytes of a ray in a file.
 pub const RAY_BYTES: usize = 32;
@@ -59,17 +59,15 @@ impl Ray32 {
     /// The packet of up to eight rays; lanes beyond the last are [`Ray32::NEVER`].
     #[inline]
     pub fn packet(rays: &[Self]) -> Rayx8 {
-        let mut rows = [[0.0f32; LANES]; 8];
-        for lane in 0..LANES {
-            let ray = rays.get(lane).unwrap_or(&Self::NEVER).to_array();
-            for (row, value) in rows.iter_mut().zip(ray) {
-                row[lane] = value;
-            }
-        }
-        let [ox, oy, oz, near, dx, dy, dz, far] = rows.map(f32x8::new);
+        let rows = match rays.first_chunk::<LANES>() {
+            Some(rays) => rays.map(Self::to_array),
+            None => std::array::from_fn(|lane| rays.get(lane).unwrap_or(&Self::NEVER).to_array()),
+        };
+        let [ox, oy, oz, near, dx, dy, dz, far] = transpose(rows.map(f32x8::new));
         RayLanes::new(vector3(ox, oy, oz), vector3(dx, dy, dz), near, far)
     }
 
+    #[inline]
     fn to_array(self) -> [f32; 8] {
         let ([ox, oy, oz], [dx, dy, dz]) = (self.org, self.dir);
         [ox, oy, oz, self.t_near, dx, dy, dz, self.t_far]

@@ -1,10 +1,9 @@
 //! Columns of a wavefront: plain numbers in an arena, read and written by slot.
 
 use bumpalo::{Bump, collections::Vec as BumpVec};
-use glam::vec3;
 
 use super::integrator::Path;
-use crate::geometry::{Ray, RayLanes};
+use crate::geometry::RayLanes;
 use crate::simd::{Bits, LANES, Mask, Mask8, Real, Vec3x8, f32x8, u32x8, vector3};
 
 /// One number a slot. Lengths are padded to whole packets.
@@ -85,13 +84,6 @@ impl<'a> RayColumns<'a> {
         for (column, values) in self.columns().zip(values) {
             column.extend((0..LANES).filter(|i| lanes >> i & 1 != 0).map(|i| values[i]));
         }
-    }
-
-    /// The ray in a slot.
-    #[inline]
-    pub(super) fn ray(&self, slot: usize) -> Ray {
-        let v = |columns: &Column3| vec3(columns[0][slot], columns[1][slot], columns[2][slot]);
-        Ray::new(v(&self.org), v(&self.dir), 0.0, self.t_far[slot])
     }
 
     /// The packet that starts at a slot.

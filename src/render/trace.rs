@@ -6,7 +6,7 @@ use super::columns::{Column, IntColumn, RayColumns};
 use super::statistics::LaneUse;
 use crate::bvh::{Stream, Tracer, Way};
 use crate::compile::Scene;
-use crate::geometry::{Hit, Ray, Rayx8};
+use crate::geometry::{Hit, Rayx8};
 use crate::simd::{LANES, Mask8};
 
 /// Hits of a wavefront, by slot.
@@ -39,11 +39,6 @@ struct Columns<'c, 'a, F> {
 impl<F: FnMut(usize, &Hit)> Stream for Columns<'_, '_, F> {
     fn len(&self) -> usize {
         self.len
-    }
-
-    #[inline]
-    fn ray(&self, index: usize) -> Option<Ray> {
-        Some(self.rays.ray(index))
     }
 
     #[inline]

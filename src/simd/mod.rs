@@ -8,6 +8,7 @@
 //! [`Real`] is implemented by `f32` and by [`f32x8`]: code that is generic over it *is* the scalar path
 //! and the eight-wide path, and can't drift apart.
 
+mod compress;
 pub mod cpu;
 mod float;
 mod integer;
@@ -19,12 +20,13 @@ mod sort;
 mod tests;
 mod vector;
 
+pub use compress::{compress, le_bits};
 pub use float::{f32x8, transpose};
 pub use integer::u32x8;
 pub use mask::Mask8;
 pub use prefetch::prefetch;
 pub use real::{Bits, Mask, Real};
-pub use sort::sort_descending;
+pub use sort::{sort_descending, sort_few_descending};
 pub use vector::{Vec3x8, Vector3, vector3};
 
 /// Rays in a packet, lanes in a register.

@@ -29,15 +29,29 @@ const NETWORK: [Layer; 6] = [
     layer([0, 2, 1, 4, 3, 6, 5, 7]),
 ];
 
-/// The lanes, greatest first. No branch depends on them.
 #[inline]
-pub fn sort_descending(keys: u32x8) -> u32x8 {
+fn through(layers: &[Layer], keys: u32x8) -> u32x8 {
     let mut keys = keys.0;
-    for Layer { partner, keeps_greater } in &NETWORK {
+    for Layer { partner, keeps_greater } in layers {
         let other = u32x8(keys).shuffle(*partner).0;
         keys = keeps_greater.0.bitselect(keys.max(other), keys.min(other));
     }
     u32x8(keys)
+}
+
+/// The lanes, greatest first. No branch depends on them.
+#[inline]
+pub fn sort_descending(keys: u32x8) -> u32x8 {
+    through(&NETWORK, keys)
+}
+
+/// The lanes, greatest first, where only the first `count` are not 0. Half the work for up to four, which
+/// never leave their half of a register.
+#[inline]
+pub fn sort_few_descending(keys: u32x8, count: u32) -> u32x8 {
+    let (halves, merge) = NETWORK.split_at(3);
+    let keys = through(halves, keys);
+    if count <= 4 { keys } else { through(merge, keys) }
 }
 
 #[cfg(test)]
@@ -51,6 +65,8 @@ mod tests {
             let keys = std::array::from_fn(|i| bits >> i & 1);
             let sorted = sort_descending(u32x8::new(keys)).to_array();
             assert!(sorted.is_sorted_by(|a, b| a >= b), "{keys:?} {sorted:?}");
+            let count = 8 - keys.iter().rev().take_while(|key| **key == 0).count();
+            assert_eq!(sort_few_descending(u32x8::new(keys), count as u32).to_array(), sorted);
         }
         let keys = [5, u32::MAX, 0, 7, 7, 1 << 31, 3, 2];
         let mut expected = keys;

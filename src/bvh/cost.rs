@@ -1,0 +1,49 @@
+//! What ways through the tree cost, so that they can be compared by what they do.
+
+use std::ops::{Add, AddAssign, Mul};
+
+/// Processor cycles, as the parts of each way took them on one machine (Zen 4). Only their ratios count,
+/// and a ray's way never shows in its answer.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Cost(pub(super) f32);
+
+impl Cost {
+    /// Sixty-four rays looked at together.
+    pub(super) const TILE: Self = Self(600.0);
+    /// A node of a tile, and each child that the tile may enter.
+    pub(super) const TILE_NODE: Self = Self(40.0);
+    pub(super) const TILE_CHILD: Self = Self(25.0);
+    /// A leaf of a tile, and the planes of each primitive.
+    pub(super) const TILE_LEAF: Self = Self(80.0);
+    pub(super) const TILE_PLANES: Self = Self(25.0);
+    /// A packet against a primitive.
+    pub(super) const PACKET_TEST: Self = Self(45.0);
+    /// A packet, its nodes, and the children that it enters.
+    pub(super) const PACKET: Self = Self(100.0);
+    pub(super) const PACKET_NODE: Self = Self(35.0);
+    pub(super) const PACKET_CHILD: Self = Self(25.0);
+    /// A ray on its own, its nodes, and its blocks.
+    pub(super) const RAY: Self = Self(50.0);
+    pub(super) const RAY_NODE: Self = Self(28.0);
+    pub(super) const RAY_BLOCK: Self = Self(85.0);
+}
+
+impl Mul<u32> for Cost {
+    type Output = Self;
+    fn mul(self, times: u32) -> Self {
+        Self(self.0 * times as f32)
+    }
+}
+
+impl Add for Cost {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0)
+    }
+}
+
+impl AddAssign for Cost {
+    fn add_assign(&mut self, other: Self) {
+        self.0 += other.0;
+    }
+}

@@ -1,0 +1,93 @@
+//! Where the segments of neighbours enter the tree.
+//!
+//! Occlusion rays are short, or leave a common neighbourhood for a common light, and their first steps are
+//! the same: down from the root, past everything that is elsewhere. These steps are taken once, by the box
+//! around the segments. What is left, up to eight subtrees, becomes a node from which each ray starts.
+
+use glam::Vec3;
+
+use super::{Bvh, Child, Kind, Node};
+use crate::geometry::{Aabb, Rayx8};
+use crate::simd::{Mask, Mask8, Real, Vec3x8, f32x8};
+
+/// Ulps of a coordinate by which the box around segments is wider than they are, against the rounding of
+/// their ends and of the slab tests that decide.
+const MARGIN: f32 = 16.0 * f32::EPSILON;
+
+/// The box around segments, as it grows.
+pub(super) struct Segments {
+    low: Vec3x8,
+    high: Vec3x8,
+}
+
+impl Segments {
+    pub(super) fn none() -> Self {
+        Self { low: Vec3x8::splat(Vec3::INFINITY), high: Vec3x8::splat(Vec3::NEG_INFINITY) }
+    }
+
+    #[inline]
+    pub(super) fn add(&mut self, rays: &Rayx8, active: Mask8) {
+        for t in [rays.t_near.min(f32x8::zero()), rays.t_far] {
+            let end = rays.org + rays.dir.scale(t);
+            self.low = Vec3x8::select(active, end.min(self.low), self.low);
+            self.high = Vec3x8::select(active, end.max(self.high), self.high);
+        }
+    }
+
+    /// The box, `None` if it has no end. `reach` bounds the coordinates of what can be hit.
+    pub(super) fn bounds(&self, reach: Vec3) -> Option<Aabb> {
+        let min = Vec3::new(self.low.x.reduce_min(), self.low.y.reduce_min(), self.low.z.reduce_min());
+        let max = Vec3::new(self.high.x.reduce_max(), self.high.y.reduce_max(), self.high.z.reduce_max());
+        let margin = (min.abs().max(max.abs()) + reach) * MARGIN;
+        let bounds = Aabb { min: min - margin, max: max + margin };
+        (bounds.min.is_finite() && bounds.max.is_finite()).then_some(bounds)
+    }
+}
+
+impl Bvh {
+    /// A node that holds all of the tree that a box meets, in up to eight subtrees.
+    pub(super) fn entry(&self, bounds: Aabb) -> Node {
+        let mut node = Node::EMPTY;
+        let mut count = 0;
+        if !self.nodes.is_empty() {
+            node.set(0, bounds, Child::inner(0));
+            count = 1;
+        }
+        let mut place = 0;
+        while place < count {
+            let Kind::Inner(index) = node.children[place].kind() else {
+                place += 1;
+                continue;
+            };
+            let below = &self.nodes[index as usize];
+            let meets = below.overlaps(bounds);
+            let more = meets.count_ones() as usize;
+            if count - 1 + more > Node::EMPTY.children.len() {
+                place += 1;
+                continue;
+            }
+            // The last subtree takes the place of the one that is opened.
+            count -= 1;
+            let (last, child) = (node.child_bounds(count), node.children[count]);
+            node.set(place, last, child);
+            node.set(count, Aabb::EMPTY, Child::ABSENT);
+            for other in (0..8).filter(|other| meets >> other & 1 != 0) {
+                node.set(count, below.child_bounds(other), below.children[other]);
+                count += 1;
+            }
+        }
+        node
+    }
+}
+
+impl Node {
+    /// The children whose boxes meet another: child i is bit i.
+    fn overlaps(&self, bounds: Aabb) -> u32 {
+        let mut meets = Mask8::splat(true);
+        for axis in 0..3 {
+            let [low, high] = self.bounds[axis].map(f32x8::new);
+            meets = meets & low.le(f32x8::splat(bounds.max[axis])) & f32x8::splat(bounds.min[axis]).le(high);
+        }
+        meets.to_bitmask()
+    }
+}

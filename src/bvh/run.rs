@@ -1,0 +1,180 @@
+//! Sixty-four rays that are judged together, and which way they go.
+
+use super::{Bvh, Node, Stream, Way, cost::Cost, entry::Segments};
+use crate::geometry::{Ray, RayLanes, Rayx8};
+use crate::simd::{LANES, Mask, Mask8, Real, Vec3x8, f32x8};
+
+/// Packets in a run.
+pub(super) const PACKETS: usize = 8;
+/// Rays in a run.
+pub(super) const RUN: usize = PACKETS * LANES;
+/// Runs up to this [`spread`](Run::spread) may go as tiles.
+const TILE_SPREAD: f32 = 0.35;
+/// Occlusion rays up to this one may go as packets: most are blocked after a few nodes, which a wave can't
+/// make up for its setting up.
+const PACKET_SPREAD: f32 = 1.2;
+/// One run in so many goes the way that has cost more, to see whether it still does.
+const PROBE: u32 = 64;
+
+/// Up to sixty-four neighbours.
+pub(super) struct Run {
+    /// Place of the first ray in its stream.
+    pub(super) first: usize,
+    len: usize,
+    pub(super) rays: [Rayx8; PACKETS],
+    pub(super) active: [Mask8; PACKETS],
+}
+
+impl Run {
+    /// Packets that hold a ray.
+    pub(super) fn packets(&self) -> usize {
+        self.len.div_ceil(LANES)
+    }
+
+    /// Which places of the run are in the stream: ray i is bit i.
+    pub(super) fn there(&self) -> u64 {
+        if self.len == 0 { 0 } else { u64::MAX >> (RUN - self.len) }
+    }
+
+    fn load<S: Stream>(&mut self, stream: &S, first: usize) {
+        (self.first, self.len) = (first, RUN.min(stream.len() - first));
+        for packet in 0..PACKETS {
+            (self.rays[packet], self.active[packet]) = if packet * LANES < self.len {
+                stream.packet(first + packet * LANES)
+            } else {
+                (self.rays[packet], Mask8::splat(false))
+            };
+        }
+    }
+
+    /// Where occlusion rays may start; `None` if their segments are not all bounded.
+    pub(super) fn entry(&self, bvh: &Bvh) -> Option<Node> {
+        let mut segments = Segments::none();
+        for (rays, active) in self.rays.iter().zip(self.active) {
+            segments.add(rays, active);
+        }
+        segments.bounds(bvh.reach()).map(|bounds| bvh.entry(bounds))
+    }
+
+    /// The diagonal of the box around the directions, in lengths of its middle; `None` if they point into
+    /// several octants.
+    fn spread(&self) -> Option<f32> {
+        let (lowest, highest) = (f32x8::splat(f32::INFINITY), f32x8::splat(f32::NEG_INFINITY));
+        let mut low = Vec3x8 { x: lowest, y: lowest, z: lowest };
+        let mut high = Vec3x8 { x: highest, y: highest, z: highest };
+        for (rays, &active) in self.rays.iter().zip(&self.active) {
+            low = Vec3x8::select(active, rays.dir.min(low), low);
+            high = Vec3x8::select(active, rays.dir.max(high), high);
+        }
+        let axes = [(low.x, high.x), (low.y, high.y), (low.z, high.z)];
+        let (mut diagonal, mut length) = (0.0, 0.0);
+        for (low, high) in axes {
+            let (low, high) = (low.reduce_min(), high.reduce_max());
+            if low < 0.0 && high > 0.0 {
+                return None;
+            }
+            diagonal += (high - low) * (high - low);
+            length += (high + low) * (high + low) * 0.25;
+        }
+        Some((diagonal / length).sqrt())
+    }
+}
+
+/// The runs of a stream, one after the other, and what has been learnt from those before.
+pub(super) struct Runs {
+    run: Box<Run>,
+    next: usize,
+    forced: Way,
+    /// The way of the run that is loaded and has not been taken.
+    waiting: Option<Way>,
+    /// Is it one that could go together?
+    together: bool,
+    /// What has been learnt from closest hits, and from occlusion.
+    habits: [Habit; 2],
+}
+
+/// What a ray cost lately; 0 before anything is known.
+#[derive(Clone, Copy, Debug, Default)]
+struct Habit {
+    together: f32,
+    alone: f32,
+    turn: u32,
+}
+
+impl Habit {
+    fn choose_together(&mut self) -> bool {
+        let cheaper = self.together <= self.alone;
+        self.turn = (self.turn + 1) % PROBE;
+        if self.turn == 0 { !cheaper } else { cheaper }
+    }
+}
+
+fn blend(lately: &mut f32, now: f32) {
+    *lately = if *lately == 0.0 { now } else { 0.75 * *lately + 0.25 * now };
+}
+
+impl Default for Runs {
+    fn default() -> Self {
+        let nothing = RayLanes::splat(&Ray::new(glam::Vec3::ZERO, glam::Vec3::ONE, 0.0, -1.0));
+        let (rays, active) = ([nothing; PACKETS], [Mask8::splat(false); PACKETS]);
+        let run = Box::new(Run { first: 0, len: 0, rays, active });
+        Self {
+            run,
+            next: 0,
+            forced: Way::Chosen,
+            waiting: None,
+            together: false,
+            habits: [Habit::default(); 2],
+        }
+    }
+}
+
+impl Runs {
+    /// Begins a stream.
+    pub(super) fn start(&mut self, way: Way) {
+        (self.next, self.forced, self.waiting) = (0, way, None);
+    }
+
+    /// The way that the next run goes; `None` at the end of the stream.
+    pub(super) fn peek<const ANY: bool, S: Stream>(&mut self, stream: &S) -> Option<Way> {
+        if self.waiting.is_none() && self.next < stream.len() {
+            self.run.load(stream, self.next);
+            self.next += self.run.len;
+            self.waiting = Some(if self.forced == Way::Chosen { self.choose::<ANY>() } else { self.forced });
+        }
+        self.waiting
+    }
+
+    /// The run that was looked at.
+    pub(super) fn take(&mut self) -> &Run {
+        self.waiting = None;
+        &self.run
+    }
+
+    /// Could the run that was looked at go together?
+    pub(super) fn could_go_together(&self) -> bool {
+        self.together
+    }
+
+    /// Remembers what the run that was taken cost as a tile or as packets.
+    pub(super) fn learn_together<const ANY: bool>(&mut self, cost: Cost) {
+        blend(&mut self.habits[usize::from(ANY)].together, cost.0 / self.run.len as f32);
+    }
+
+    /// Remembers what rays that could have gone together cost in a wave.
+    pub(super) fn learn_alone<const ANY: bool>(&mut self, cost: Cost, rays: u32) {
+        blend(&mut self.habits[usize::from(ANY)].alone, cost.0 / rays as f32);
+    }
+
+    fn choose<const ANY: bool>(&mut self) -> Way {
+        let limit = if ANY { PACKET_SPREAD } else { TILE_SPREAD };
+        self.together = self.run.spread().is_some_and(|spread| spread <= limit);
+        if !self.together || !self.habits[usize::from(ANY)].choose_together() {
+            Way::Wave
+        } else if ANY {
+            Way::Packet
+        } else {
+            Way::Tile
+        }
+    }
+}

@@ -1,0 +1,186 @@
+//! Rays made ready for a wave, a run of neighbours at a time.
+
+use super::slot::Slot;
+use crate::bvh::{
+    Bvh, Child, Node, Stream, Way,
+    run::{PACKETS, RUN, Runs},
+};
+use crate::geometry::{Hit, RayLanes, Rayx8};
+use crate::simd::{Bits, LANES, Mask, Real, Vec3x8, f32x8, transpose, u32x8, vector3};
+
+/// Ulps of |rdir|·(|org| + |bound|) by which slabs are widened: 3 for the fused form and its constant, 12
+/// for the widening and the rounding of the kernels' own test.
+const MARGIN: f32 = 8.0 * f32::EPSILON;
+/// Greatest magnitude of a reciprocal direction in box tests.
+const STEEPEST: f32 = 1e18;
+
+/// All that a ray needs on its way: three rows of eight, so that it is copied in three moves.
+///
+/// ```text
+/// inv x y z     near shift x y z   t_near  t_far
+/// far shift x y z     org x y z    t_near  index
+/// dir x y z     rdir x y z         –       signs
+/// ```
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(super) struct Ready([[f32; 8]; 3]);
+
+/// What a box test needs along an axis: a plane at x is met at x·inv + shift.
+pub(super) struct Slab {
+    pub(super) inv: f32,
+    pub(super) near_shift: f32,
+    pub(super) far_shift: f32,
+    pub(super) negative: bool,
+}
+
+impl Ready {
+    pub(super) const NOTHING: Self = Self([[0.0; 8]; 3]);
+
+    #[inline]
+    pub(super) fn slab(&self, axis: usize) -> Slab {
+        let [first, second, third] = &self.0;
+        Slab {
+            inv: first[axis],
+            near_shift: first[axis + 3],
+            far_shift: second[axis],
+            negative: third[7].to_bits() >> axis & 1 != 0,
+        }
+    }
+
+    /// Lower end of the ray, not below 0, for box tests.
+    #[inline]
+    pub(super) fn t_near(&self) -> f32 {
+        self.0[0][6]
+    }
+
+    #[inline]
+    pub(super) fn t_far(&self) -> f32 {
+        self.0[0][7]
+    }
+
+    #[inline]
+    pub(super) fn index(&self) -> usize {
+        self.0[1][7].to_bits() as usize
+    }
+
+    /// The ray itself, in all lanes, for the leaves.
+    #[inline]
+    pub(super) fn splat(&self) -> Rayx8 {
+        let [first, second, third] = &self.0;
+        let splat = |row: &[f32; 8], at: usize| {
+            vector3(f32x8::splat(row[at]), f32x8::splat(row[at + 1]), f32x8::splat(row[at + 2]))
+        };
+        RayLanes {
+            org: splat(second, 3),
+            dir: splat(third, 0),
+            rdir: splat(third, 3),
+            t_near: f32x8::splat(second[6]),
+            t_far: f32x8::splat(first[7]),
+        }
+    }
+
+    /// The rays of a packet that starts at a place in its stream.
+    fn packet(rays: &Rayx8, first: usize, reach: glam::Vec3, ready: &mut [Self; LANES]) {
+        let RayLanes { org, dir, rdir, t_near, t_far } = rays;
+        let inv = rdir.map(|r| r.max(f32x8::splat(-STEEPEST)).min(f32x8::splat(STEEPEST)));
+        let reach = Vec3x8::splat(reach);
+        let margin =
+            |inv: f32x8, org: f32x8, reach: f32x8| f32x8::splat(MARGIN) * inv.abs() * (org.abs() + reach);
+        let axis = |inv: f32x8, org: f32x8, reach: f32x8| {
+            let (shift, margin) = (-(org * inv), margin(inv, org, reach));
+            (shift - margin, shift + margin)
+        };
+        let (x, y, z) =
+            (axis(inv.x, org.x, reach.x), axis(inv.y, org.y, reach.y), axis(inv.z, org.z, reach.z));
+        let sign = |x: f32x8, bit: u32| (x.to_bits() >> 31) << bit;
+        let signs = sign(inv.x, 0) | sign(inv.y, 1) | sign(inv.z, 2);
+        let index = u32x8::from_fn(|i| (first + i) as u32);
+        let rows = [
+            transpose([inv.x, inv.y, inv.z, x.0, y.0, z.0, t_near.max(f32x8::zero()), *t_far]),
+            transpose([x.1, y.1, z.1, org.x, org.y, org.z, *t_near, f32x8::from_bits(index)]),
+            transpose([dir.x, dir.y, dir.z, rdir.x, rdir.y, rdir.z, f32x8::zero(), f32x8::from_bits(signs)]),
+        ];
+        for (i, ready) in ready.iter_mut().enumerate() {
+            *ready = Self([rows[0][i].to_array(), rows[1][i].to_array(), rows[2][i].to_array()]);
+        }
+    }
+}
+
+/// The rays of a run that have not started.
+pub(super) struct Feed {
+    ready: Box<[[Ready; LANES]; PACKETS]>,
+    /// Ray i is bit i.
+    waiting: u64,
+    /// Where occlusion rays of the run start, if not at the root.
+    entry: Option<Node>,
+    /// Rays since the wave began, and whether any could have gone together.
+    rays: u32,
+    together: bool,
+}
+
+impl Default for Feed {
+    fn default() -> Self {
+        Self {
+            ready: Box::new([[Ready::NOTHING; LANES]; PACKETS]),
+            waiting: 0,
+            entry: None,
+            rays: 0,
+            together: false,
+        }
+    }
+}
+
+impl Feed {
+    /// How many rays have come since this was last asked, and whether any could have gone together.
+    pub(super) fn take_count(&mut self) -> (u32, bool) {
+        (std::mem::take(&mut self.rays), std::mem::take(&mut self.together))
+    }
+
+    /// Starts the next ray in a slot; false if there is none, or if the next run goes another way. Rays that
+    /// can't hit anything are answered.
+    #[inline]
+    pub(super) fn next<const ANY: bool, S: Stream>(
+        &mut self,
+        bvh: &Bvh,
+        stream: &mut S,
+        runs: &mut Runs,
+        slot: &mut Slot,
+    ) -> bool {
+        while self.waiting == 0 {
+            if runs.peek::<ANY, S>(stream) != Some(Way::Wave) {
+                return false;
+            }
+            self.refill::<ANY, S>(bvh, stream, runs);
+        }
+        let next = self.waiting.trailing_zeros() as usize % RUN;
+        self.waiting &= self.waiting - 1;
+        let ray = &self.ready[next / LANES][next % LANES];
+        match &self.entry {
+            Some(node) if ANY => slot.start_at::<ANY>(ray, node),
+            _ => slot.start::<ANY>(ray),
+        }
+        true
+    }
+
+    fn refill<const ANY: bool, S: Stream>(&mut self, bvh: &Bvh, stream: &mut S, runs: &mut Runs) {
+        self.together |= runs.could_go_together();
+        let run = runs.take();
+        self.rays += run.there().count_ones();
+        self.entry = if ANY { run.entry(bvh) } else { None };
+        let nowhere = self.entry.as_ref().is_some_and(|node| node.children[0] == Child::ABSENT);
+        if !nowhere && !bvh.nodes.is_empty() {
+            let reach = bvh.reach();
+            for packet in 0..run.packets() {
+                self.waiting |= u64::from(run.active[packet].to_bitmask()) << (packet * LANES);
+                let first = run.first + packet * LANES;
+                Ready::packet(&run.rays[packet], first, reach, &mut self.ready[packet]);
+            }
+        }
+        self.waiting &= run.there();
+        let mut never = run.there() & !self.waiting;
+        while never != 0 {
+            stream.answer(run.first + never.trailing_zeros() as usize, &Hit::MISS);
+            never &= never - 1;
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! Rays that have nothing in common: sixteen of them, each on its own way, in turn.
+//!
+//! A single ray is a chain of steps that wait for one another: which node is next is known only when the
+//! last one has been tested. Sixteen rays that take the same step in turn, without a branch that depends
+//! on the ray, hide each other's waiting; while one works, the others' next nodes are on their way from
+//! memory.
+//!
+//! Rays come from a [`Feed`], which makes them ready in runs of neighbours, and wait and work in [`Slot`]s.
+
+mod feed;
+mod slot;
+
+use super::{Bvh, Child, Kind, Leaves, Node, Stream, Tally, cost::Cost, run::Runs};
+use crate::simd::prefetch;
+use feed::Feed;
+use slot::Slot;
+
+/// Rays in turn: fewer leave latency open, more leave the first-level cache.
+const SLOTS: usize = 16;
+
+/// Trees of fewer nodes are near enough for occlusion rays, whose steps are short: asking costs more than
+/// waiting.
+const CACHED: usize = 8192;
+
+/// Slots and lists of a wave, kept from stream to stream.
+pub(super) struct Wave {
+    slots: Box<[Slot; SLOTS]>,
+    feed: Feed,
+}
+
+impl Default for Wave {
+    fn default() -> Self {
+        Self { slots: Box::new(std::array::from_fn(|_| Slot::new())), feed: Feed::default() }
+    }
+}
+
+/// Sets of slots: a slot is at a node, at a leaf, at its end, or has nothing to do.
+///
+/// Which set comes next is a shift and an or, in registers: a list in memory would make each slot's turn
+/// wait for the last one's, and a branch would be wrong half of the time.
+#[derive(Clone, Copy, Default)]
+struct Sets {
+    nodes: u32,
+    leaves: u32,
+    done: u32,
+}
+
+impl Sets {
+    #[inline]
+    fn insert(&mut self, slot: usize, child: Child) {
+        let leaf = u32::from(child.is_leaf_or_absent());
+        self.leaves |= leaf << slot;
+        self.nodes |= (leaf ^ 1) << slot;
+    }
+}
+
+/// The slots of a set, lowest first.
+#[inline]
+fn each(set: u32) -> impl Iterator<Item = usize> {
+    let mut left = set;
+    std::iter::from_fn(move || {
+        let slot = left.trailing_zeros() as usize;
+        (left != 0).then(|| {
+            left &= left - 1;
+            slot % SLOTS
+        })
+    })
+}
+
+impl Bvh {
+    /// Traces the runs of a stream up to one that goes another way.
+    pub(super) fn intersect_wave<const ANY: bool, L: Leaves, S: Stream, T: Tally>(
+        &self,
+        leaves: &L,
+        stream: &mut S,
+        runs: &mut Runs,
+        wave: &mut Wave,
+        tally: &mut T,
+    ) {
+        if ANY && self.nodes.len() < CACHED {
+            self.in_turn::<ANY, false, L, S, T>(leaves, stream, runs, wave, tally);
+        } else {
+            self.in_turn::<ANY, true, L, S, T>(leaves, stream, runs, wave, tally);
+        }
+    }
+
+    /// `ASK` says whether nodes and blocks are asked for ahead of time.
+    fn in_turn<const ANY: bool, const ASK: bool, L: Leaves, S: Stream, T: Tally>(
+        &self,
+        leaves: &L,
+        stream: &mut S,
+        runs: &mut Runs,
+        wave: &mut Wave,
+        tally: &mut T,
+    ) {
+        let Wave { slots, feed } = wave;
+        let mut sets = Sets { done: (1 << SLOTS) - 1, ..Sets::default() };
+        let mut fresh = true;
+        let (mut steps, mut blocks) = (0, 0);
+        while sets.nodes | sets.leaves | sets.done != 0 {
+            for which in each(std::mem::take(&mut sets.nodes)) {
+                let slot = &mut slots[which];
+                tally.node(1);
+                steps += 1;
+                slot.step::<ANY>(&self.nodes[slot.child.index()]);
+                ask_for::<ASK, L>(slot.child, &self.nodes, leaves);
+                sets.insert(which, slot.child);
+            }
+            for which in each(std::mem::take(&mut sets.leaves)) {
+                let slot = &mut slots[which];
+                let mut done = slot.child == Child::ABSENT;
+                if let Kind::Leaf { first, count } = slot.child.kind() {
+                    tally.leaf(count, 1);
+                    blocks += 1;
+                    done = slot.test::<ANY, L>(leaves, first, count);
+                }
+                ask_for::<ASK, L>(slot.child, &self.nodes, leaves);
+                sets.insert(which, slot.child);
+                sets.done |= u32::from(done) << which;
+            }
+            sets.nodes &= !sets.done;
+            sets.leaves &= !sets.done;
+            for which in each(std::mem::take(&mut sets.done)) {
+                let slot = &mut slots[which];
+                if !fresh {
+                    stream.answer(slot.index(), &slot.settle::<ANY>());
+                }
+                if feed.next::<ANY, S>(self, stream, runs, slot) {
+                    sets.insert(which, slot.child);
+                }
+            }
+            fresh = false;
+        }
+        let (rays, together) = feed.take_count();
+        if together {
+            let cost = Cost::RAY * rays + Cost::RAY_NODE * steps + Cost::RAY_BLOCK * blocks;
+            runs.learn_alone::<ANY>(cost, rays);
+        }
+    }
+}
+
+/// Asks for a node or a block while other slots take their turn. An address is chosen, not a branch.
+#[inline]
+fn ask_for<const ASK: bool, L: Leaves>(child: Child, nodes: &[Node], leaves: &L) {
+    if !ASK {
+        return;
+    }
+    let node = nodes.as_ptr().wrapping_add(child.index()).cast();
+    let address = if child.is_leaf_or_absent() { leaves.address(child.slot()) } else { node };
+    prefetch::<5>(address);
+}

@@ -1,0 +1,152 @@
+//! A ray on its way.
+
+use super::feed::Ready;
+use crate::bvh::{Child, Hitx8, Leaves, Node, STACK};
+use crate::geometry::{Hit, PrimitiveId};
+use crate::simd::{Bits, LANES, Mask, Real, compress, f32x8, le_bits, sort_few_descending, u32x8};
+
+/// The ray, what it has found, and what waits for it.
+#[repr(C, align(64))]
+pub(super) struct Slot {
+    ray: Ready,
+    /// What has been hit: lanes are places in blocks.
+    hit: Hitx8,
+    /// Distance of the nearest hit so far, or the end of the ray.
+    t: f32,
+    pub(super) child: Child,
+    top: u32,
+    /// Distances of the children that wait, rounded down, nearest last, from the eighth on; not kept for
+    /// occlusion.
+    keys: [u32; STACK + 16],
+    /// The children. The lowest entry is the end of the ray.
+    children: [u32; STACK + 8],
+}
+
+/// Bits of a key that say which of a node's children it belongs to.
+const PLACE: u32 = 7;
+
+impl Slot {
+    pub(super) fn new() -> Self {
+        Self {
+            ray: Ready::NOTHING,
+            hit: Hitx8::nothing(f32x8::zero()),
+            t: 0.0,
+            child: Child::ABSENT,
+            top: 0,
+            keys: [0; STACK + 16],
+            children: [Child::ABSENT.word(); STACK + 8],
+        }
+    }
+
+    /// Place of the ray in its stream.
+    #[inline]
+    pub(super) fn index(&self) -> usize {
+        self.ray.index()
+    }
+
+    /// Takes a ray to the root.
+    #[inline]
+    pub(super) fn start<const ANY: bool>(&mut self, ray: &Ready) {
+        self.ray = *ray;
+        self.t = ray.t_far();
+        if !ANY {
+            self.hit = Hitx8::nothing(f32x8::splat(self.t));
+        }
+        self.child = Child::inner(0);
+        self.top = 1;
+    }
+
+    /// Takes a ray to the children of a node that is not the tree's.
+    #[inline]
+    pub(super) fn start_at<const ANY: bool>(&mut self, ray: &Ready, node: &Node) {
+        self.start::<ANY>(ray);
+        self.step::<ANY>(node);
+    }
+
+    /// Tests the boxes of a node and moves to the nearest child, or to what waits.
+    #[inline]
+    pub(super) fn step<const ANY: bool>(&mut self, node: &Node) {
+        let mut low = f32x8::splat(self.ray.t_near());
+        let mut high = f32x8::splat(self.t);
+        for axis in 0..3 {
+            let slab = self.ray.slab(axis);
+            let (near, far) = node.slabs(axis, slab.negative);
+            let inv = f32x8::splat(slab.inv);
+            low = f32x8::from(*near).fused(inv, f32x8::splat(slab.near_shift)).max(low);
+            high = f32x8::from(*far).fused(inv, f32x8::splat(slab.far_shift)).min(high);
+        }
+        let enters = le_bits(low, high);
+        let count = enters.count_ones();
+        let top = self.top as usize;
+        let children = if ANY {
+            compress(node.words(), enters)
+        } else {
+            let keys = (low.to_bits() & u32x8::splat(!PLACE)) | u32x8::new([0, 1, 2, 3, 4, 5, 6, 7]);
+            let keys = sort_few_descending(compress(keys, enters), count);
+            self.keys[top + 8..top + 16].copy_from_slice(&keys.to_array());
+            node.words().shuffle(keys & u32x8::splat(PLACE))
+        };
+        self.children[top..top + 8].copy_from_slice(&children.to_array());
+        self.top = self.top + count - 1;
+        self.child = Child::from_word(self.children[self.top as usize]);
+    }
+
+    /// Tests a leaf and moves to what waits. Returns whether the ray has come to its end.
+    // Left to itself the compiler calls it, and a call between two rays costs them their overlap.
+    #[inline(always)]
+    pub(super) fn test<const ANY: bool, L: Leaves>(&mut self, leaves: &L, first: u32, count: u32) -> bool {
+        let ray = &self.ray;
+        if ANY {
+            let mut hit = Hitx8::nothing(f32x8::splat(ray.t_far()));
+            leaves.intersect_block::<true>(first, count, || ray.splat(), &mut hit);
+            let blocked = hit.t.equal(f32x8::splat(f32::NEG_INFINITY)).any();
+            self.t = if blocked { f32::NEG_INFINITY } else { self.t };
+            self.pop::<true>();
+            return blocked | (self.child == Child::ABSENT);
+        }
+        leaves.intersect_block::<false>(first, count, || ray.splat(), &mut self.hit);
+        self.t = self.hit.t.reduce_min();
+        self.pop::<false>();
+        self.child == Child::ABSENT
+    }
+
+    /// What the ray has hit: the nearest of its lanes, and of those the one with the lowest id.
+    #[inline]
+    pub(super) fn settle<const ANY: bool>(&self) -> Hit {
+        if ANY {
+            return if self.t == f32::NEG_INFINITY { Hit::BLOCKED } else { Hit::MISS };
+        }
+        let mut at = self.hit.t.equal(f32x8::splat(self.t)).to_bitmask();
+        let mut nearest = self.hit.lane(at.trailing_zeros() as usize % LANES);
+        at &= at.wrapping_sub(1);
+        while at != 0 {
+            let other = self.hit.lane(at.trailing_zeros() as usize % LANES);
+            nearest = if other.closer_than(&nearest) { other } else { nearest };
+            at &= at - 1;
+        }
+        if nearest.primitive == PrimitiveId::NONE { Hit::MISS } else { nearest }
+    }
+
+    /// Moves to the nearest child that waits and is near enough.
+    #[inline]
+    fn pop<const ANY: bool>(&mut self) {
+        let mut top = self.top as usize;
+        if ANY {
+            top -= 1;
+        } else {
+            // Eight at a time. The end of the ray has key 0, and is always near enough.
+            loop {
+                let keys = <[u32; 8]>::try_from(&self.keys[top..top + 8]).unwrap_or_default();
+                let distances = f32x8::from_bits(u32x8::new(keys) & u32x8::splat(!PLACE));
+                let near = u32::from(le_bits(distances, f32x8::splat(self.t)));
+                if near != 0 {
+                    top = top + (31 - near.leading_zeros()) as usize - 8;
+                    break;
+                }
+                top -= 8;
+            }
+        }
+        self.top = top as u32;
+        self.child = Child::from_word(self.children[top]);
+    }
+}

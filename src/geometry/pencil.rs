@@ -1,0 +1,148 @@
+//! Rays through one point against the edges of a triangle: a test that only culls.
+//!
+//! The planes through an origin and the three edges of a triangle have the normals U = a × e₂, V = e₁ × a
+//! and W = e₂ × e₁ − U − V, with a = v₀ − org. A ray from that origin has the barycentric coordinates
+//! u : v : w = dir·U : dir·V : dir·W \[MT97\], so one that hits the triangle has no two of these products
+//! with different signs. If over a whole box of directions one of them is positive and another negative,
+//! none of its rays hits.
+//!
+//! Both sides are rounded, so "positive" means beyond [`EdgePlanes::margin`], which bounds what the kernel
+//! and this test can differ by.
+
+use glam::Vec3;
+
+use super::TriangleLanes;
+use crate::simd::{Mask8, Real, Vec3x8, Vector3, f32x8};
+
+/// Roundings, in ulps of |dir|·(|a|·(|e₁| + |e₂|) + |e₁|·|e₂|): the kernel's products take part with at
+/// most 10 each, these with as many, and the middle and the radius of the directions with 4.
+const ULPS: f32 = 48.0 * f32::EPSILON;
+/// Against products that underflow.
+const LEAST: f32 = 1e-34;
+
+/// Boxes of directions from one origin, one a lane.
+#[derive(Clone, Copy, Debug)]
+pub struct Pencils {
+    org: Vec3,
+    middle: Vec3x8,
+    radius: Vec3x8,
+    /// Greatest |x| + |y| + |z| of a direction.
+    length: f32x8,
+}
+
+impl Pencils {
+    /// Directions between two corners, which may be off by an ulp or two.
+    #[inline]
+    pub fn new(org: Vec3, low: Vec3x8, high: Vec3x8) -> Self {
+        let half = f32x8::splat(0.5);
+        let greatest = low.abs().max(high.abs());
+        Self {
+            org,
+            middle: (low + high).scale(half),
+            radius: (high - low).scale(half),
+            length: greatest.x + greatest.y + greatest.z,
+        }
+    }
+
+    /// The origin.
+    #[inline]
+    pub fn org(&self) -> Vec3 {
+        self.org
+    }
+
+    /// Which pencils may hold a ray that hits the triangle in a lane of the planes.
+    #[inline]
+    pub fn meet(&self, planes: &EdgePlanes<f32x8>, lane: usize) -> Mask8 {
+        let margin = f32x8::splat(planes.margin.lane(lane)).fused(self.length, f32x8::splat(LEAST));
+        let along = |plane: &Vec3x8| {
+            let [x, y, z] = [plane.x, plane.y, plane.z].map(|component| f32x8::splat(component.lane(lane)));
+            let middle = self.middle.z.fused(z, self.middle.y.fused(y, self.middle.x * x));
+            let radius = self.radius.z.fused(z.abs(), self.radius.y.fused(y.abs(), self.radius.x * x.abs()));
+            (middle - radius, middle + radius)
+        };
+        let [u, v, w] = [along(&planes.u), along(&planes.v), along(&planes.w)];
+        let negative = u.1.min(v.1).min(w.1).lt(-margin);
+        let positive = margin.lt(u.0.max(v.0).max(w.0));
+        !(negative & positive)
+    }
+}
+
+/// The planes through an origin and the edges of triangles in lanes.
+#[derive(Clone, Copy, Debug)]
+pub struct EdgePlanes<R> {
+    u: Vector3<R>,
+    v: Vector3<R>,
+    w: Vector3<R>,
+    /// Bound on the rounding of a product with a direction, for each unit of its length.
+    margin: R,
+}
+
+impl<R: Real> TriangleLanes<R> {
+    /// The planes through the edges and an origin.
+    #[inline]
+    pub fn edge_planes(&self, org: Vec3) -> EdgePlanes<R> {
+        let size = |v: Vector3<R>| {
+            let v = v.abs();
+            v.x + v.y + v.z
+        };
+        let a = self.v0 - Vector3::splat(org);
+        let (u, v) = (a.cross(self.e2), self.e1.cross(a));
+        let w = self.e2.cross(self.e1) - u - v;
+        let (e1, e2) = (size(self.e1), size(self.e2));
+        let margin = R::splat(ULPS) * (size(a) * (e1 + e2) + e1 * e2) + R::splat(LEAST);
+        EdgePlanes { u, v, w, margin }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Ray, Triangle, seeds::Random};
+    use super::*;
+    use crate::simd::Mask;
+
+    /// Eight pencils around eight rays each, from one origin, towards the edges of a triangle.
+    #[test]
+    fn no_ray_that_hits_is_culled() {
+        let mut random = Random::new(29);
+        let (mut hits, mut culled) = (0, 0);
+        for round in 0..40_000 {
+            let scale = [1.0, 1e-4, 1e4, 1e-12, 1e9][round % 5];
+            let grid = round % 3 == 0;
+            let mut point = || if grid { random.grid() } else { random.vector() };
+            let [v0, v1, v2, org] = std::array::from_fn(|_| point() * scale);
+            let triangle = Triangle::new(v0, v1, v2);
+            let spread = [0.0, 1e-6, 1e-2, 0.5][round % 4];
+            let mut low = [Vec3::INFINITY; 8];
+            let mut high = [Vec3::NEG_INFINITY; 8];
+            let mut hit = [false; 8];
+            for lane in 0..8 {
+                // Around a corner, a point of an edge, the inside or the outside.
+                let (u, v) = [(0.0, 0.0), (0.5, 0.5), (0.3, 0.3), (0.7, 0.0), (-0.4, 0.2), (0.9, 0.8)]
+                    [random.below(6) as usize];
+                let target = v0 + triangle.e1 * u + triangle.e2 * v - org;
+                for _ in 0..8 {
+                    let dir = target + random.vector() * (spread * scale);
+                    if dir == Vec3::ZERO {
+                        continue;
+                    }
+                    let ray = Ray::new(org, dir, f32::NEG_INFINITY, f32::INFINITY);
+                    (low[lane], high[lane]) = (low[lane].min(dir), high[lane].max(dir));
+                    hit[lane] |= triangle.intersect(&ray).is_some();
+                }
+            }
+            let lanes = TriangleLanes {
+                v0: Vec3x8::splat(triangle.v0),
+                e1: Vec3x8::splat(triangle.e1),
+                e2: Vec3x8::splat(triangle.e2),
+            };
+            let pencils = Pencils::new(org, Vec3x8::from_fn(|i| low[i]), Vec3x8::from_fn(|i| high[i]));
+            let meet = pencils.meet(&lanes.edge_planes(org), 5).to_bitmask();
+            for (lane, hit) in hit.into_iter().enumerate() {
+                hits += u32::from(hit);
+                culled += 1 - (meet >> lane & 1);
+                assert!(!hit || meet >> lane & 1 != 0, "{triangle:?} from {org} in lane {lane}");
+            }
+        }
+        assert!(hits > 50_000 && culled > 20_000, "{hits} hit, {culled} culled");
+    }
+}
