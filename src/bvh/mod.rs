@@ -8,18 +8,30 @@
 //! \[YKL17\]. Traversal: a packet of eight rays or a single one, closest hit and occlusion from one body.
 
 mod beam;
+mod binary;
+mod bins;
 mod build;
 mod collapse;
+mod links;
+mod morton;
 mod node;
 mod packet;
+mod partition;
+mod quality;
+mod reference;
+mod reinsert;
 mod single;
 mod stream;
+mod sweep;
 mod tile;
 mod validate;
 mod wave;
+mod weigh;
 
-pub use build::{MAX_LEAF, Reference};
+pub use build::MAX_LEAF;
 pub use node::{Child, Kind, Node};
+pub use quality::Quality;
+pub use reference::Reference;
 pub use stream::{Stream, Tracer, Way};
 pub use validate::{Defect, Shape};
 use wave::Wave;
