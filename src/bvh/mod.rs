@@ -4,8 +4,10 @@
 //! class into *slots*, eight to a block, and it hands ranges of slots to whoever knows what is in them
 //! ([`Leaves`]).
 //!
-//! Build: binned SAH \[Wal07\] to a binary tree, collapsed to eight children by dynamic programming
-//! \[YKL17\]. Traversal: a packet of eight rays or a single one, closest hit and occlusion from one body.
+//! Build, by one of three qualities ([`Quality`]): a binary tree, by binned SAH \[Wal07\] (`build`, and
+//! `sweep` near the leaves) or along the Morton curve \[LGS09\] (`morton`), optimised by reinsertion
+//! \[MB18\] (`reinsert`); then collapsed to eight children by dynamic programming \[YKL17\] (`weigh`
+//! decides, `collapse` lays out). Traversal: a packet of eight rays or a single one, closest hit and occlusion from one body.
 
 mod beam;
 mod binary;

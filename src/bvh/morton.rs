@@ -1,8 +1,8 @@
 //! A binary tree along the Morton curve \[LGS09\]: quick to build, dearer to trace.
 //!
 //! Centres are rounded to a grid of 4096³ cells and sorted along the curve through it; where the codes
-//! of a run first differ in a bit, the run is split. The last few references are split with care
-//! ([`sweep`](super::sweep)), which is where most of the cost of a tree lies.
+//! of a run first differ in a bit, the run is split. The last sixteen references are split by SAH, as
+//! in the better qualities ([`sweep`](super::sweep)).
 
 use glam::Vec3A;
 use rayon::prelude::*;

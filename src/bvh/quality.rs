@@ -16,7 +16,7 @@ use crate::geometry::Aabb;
 pub enum Quality {
     /// Sorted along the Morton curve \[LGS09\]: for a first look, or a scene that changes with every frame.
     Fast,
-    /// Binned SAH \[Wal07\], exact in the last four levels: for most pictures.
+    /// Binned SAH \[Wal07\], exact for the last sixteen primitives: for most pictures.
     #[default]
     Medium,
     /// Medium, then optimised by reinsertion \[MB18\]: for rays by the hundred million.
