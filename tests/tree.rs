@@ -217,11 +217,11 @@ fn threads_do_not_change_the_tree() {
 
 fn threads_do_not_change(boxes: &[Aabb], quality: Quality) {
     let build = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads start");
         pool.install(|| Bvh::build_with(references(boxes, |i| u8::from(i % 7 == 0)), quality))
     };
     let one = build(1);
-    one.validate(boxes).unwrap();
+    one.validate(boxes).expect("a sound tree");
     for threads in [2, 3] {
         let other = build(threads);
         assert_eq!(one.slots(), other.slots());
@@ -235,7 +235,7 @@ fn threads_do_not_change(boxes: &[Aabb], quality: Quality) {
 
 /// Boxes of a generated mesh's triangles.
 fn mesh_boxes(spec: &str) -> Vec<Aabb> {
-    let mesh = packlight::load::generate::mesh(spec).unwrap();
+    let mesh = packlight::load::generate::mesh(spec).expect("a mesh that can be made");
     let corners = |triangle: &[u32; 3]| triangle.map(|i| mesh.positions[i as usize]);
     mesh.triangles.iter().map(|triangle| Aabb::of_points(corners(triangle))).collect()
 }

@@ -44,11 +44,11 @@ impl Grid {
     const REACH: f32 = 1.0 - 1.0 / (1 << 20) as f32;
 
     fn new(centres: Bounds) -> Self {
-        let size = centres.max - centres.min;
+        let size = centres.max() - centres.min();
         let scale = Vec3A::splat(Self::REACH) / size;
         // A size of zero, or so small that its reciprocal overflows, separates nothing: all in one bin.
         let usable = size.cmpgt(Vec3A::ZERO) & scale.cmplt(Vec3A::INFINITY);
-        Self { origin: centres.min, scale: Vec3A::select(usable, scale, Vec3A::ZERO) }
+        Self { origin: centres.min(), scale: Vec3A::select(usable, scale, Vec3A::ZERO) }
     }
 
     /// The place along each axis as 1 + [0, 1): the bin is in the first bits of the mantissa.
@@ -73,8 +73,8 @@ impl Bins {
         for reference in references {
             let bounds = reference.bounds();
             let places = grid.place(bounds.centre()).to_array();
-            for axis in 0..3 {
-                let bin = (places[axis].to_bits() >> (23 - BINS.ilog2())) as usize % BINS;
+            for (axis, place) in places.into_iter().enumerate() {
+                let bin = (place.to_bits() >> (23 - BINS.ilog2())) as usize % BINS;
                 bins.bounds[axis][bin] = bins.bounds[axis][bin].union(bounds);
                 bins.counts[axis][bin] += 1;
             }

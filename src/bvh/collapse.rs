@@ -214,7 +214,7 @@ impl Weighed<'_> {
     fn forest(&self, run: Run) -> Forest {
         let mut forest = Forest::default();
         // The node itself is being filled, so it is not its own child.
-        let from_left = self.choices.of(run.root).from_left(8);
+        let from_left = self.choices.of(run.root).left_trees(8);
         let [left, right] = run.children(self.nodes);
         self.trees(left, from_left, &mut forest);
         self.trees(right, 8 - from_left, &mut forest);
@@ -223,7 +223,7 @@ impl Weighed<'_> {
 
     /// The roots of a forest of at most `i` trees below a node.
     fn trees(&self, run: Run, i: usize, forest: &mut Forest) {
-        let from_left = self.choices.of(run.root).from_left(i);
+        let from_left = self.choices.of(run.root).left_trees(i);
         if from_left == 0 {
             forest.push(run);
             return;

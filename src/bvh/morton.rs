@@ -22,10 +22,10 @@ const NUMBER: u32 = 64 - 3 * BITS;
 /// Builds the tree and puts the references into leaf order. Not for an empty slice.
 pub(super) fn build(references: &mut Vec<Reference>) -> Vec<Packed> {
     let [_, centres] = build::extents(references);
-    let size = (centres.max - centres.min).max(Vec3A::splat(f32::MIN_POSITIVE));
+    let size = (centres.max() - centres.min()).max(Vec3A::splat(f32::MIN_POSITIVE));
     // Below 1 whatever the rounding; divided, as the reciprocal of a small size overflows.
     let cell = |reference: &Reference| {
-        let place = (reference.bounds().centre() - centres.min) / size;
+        let place = (reference.bounds().centre() - centres.min()) / size;
         (place * ((1 << BITS) - 1) as f32).to_array().map(|x| x as u64)
     };
     let key = |(i, reference): (usize, &Reference)| {

@@ -1,6 +1,5 @@
 //! References to the left or the right of a plane, in place.
 
-use glam::{BVec3A, Vec3A};
 use rayon::prelude::*;
 
 use super::{
@@ -25,13 +24,9 @@ fn serial(references: &mut [Reference], plane: &Plane) -> (usize, Centres) {
         let is_left = plane.is_left(&reference);
         let centre = reference.bounds().centre();
         // What goes to one side is nothing to the other.
-        let mask = BVec3A::splat(is_left);
-        let only = |mask, empty: Bounds| Bounds {
-            min: Vec3A::select(mask, centre, empty.min),
-            max: Vec3A::select(mask, centre, empty.max),
-        };
-        left = left.union(only(mask, Bounds::EMPTY));
-        right = right.union(only(!mask, Bounds::EMPTY));
+        let centre = Bounds::point(centre);
+        left = left.union(centre.or_empty(!is_left));
+        right = right.union(centre.or_empty(is_left));
         references[i] = references[left_count];
         references[left_count] = reference;
         left_count += usize::from(is_left);

@@ -3,6 +3,7 @@
 use glam::{Vec3A, Vec3Swizzles, Vec4, Vec4Swizzles};
 
 use crate::geometry::Aabb;
+use crate::simd::{Mask, Real, f32x8};
 
 /// A primitive, as the builder sees it: 32 bytes, half a cache line.
 #[derive(Clone, Copy, Debug)]
@@ -17,15 +18,13 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// The box in two registers. Each is one load of what stands side by side in memory, a coordinate
-    /// too many.
+    /// The box in a register: two loads of what stands side by side in memory, a coordinate too many.
     #[inline]
     pub(super) fn bounds(&self) -> Bounds {
         let Aabb { min, max } = self.bounds;
-        Bounds {
-            min: Vec3A::from_vec4(Vec4::new(min.x, min.y, min.z, max.x)),
-            max: Vec3A::from_vec4(Vec4::new(min.z, max.x, max.y, max.z).yzww()),
-        }
+        let low = Vec4::new(min.x, min.y, min.z, max.x);
+        let high = Vec4::new(min.z, max.x, max.y, max.z).yzww();
+        Bounds::halves(-low, high)
     }
 
     /// Twice the middle of the box along an axis: what [`Bounds::centre`] has there, to the bit.
@@ -35,31 +34,52 @@ impl Reference {
     }
 }
 
-/// A box whose corners are registers: a union is two instructions.
+/// A box in one register: −min and max, a lane to spare after each. A union is one instruction.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bounds {
-    pub(super) min: Vec3A,
-    pub(super) max: Vec3A,
-}
+pub(super) struct Bounds(f32x8);
 
 impl Bounds {
-    pub(super) const EMPTY: Self = Self { min: Vec3A::INFINITY, max: Vec3A::NEG_INFINITY };
+    pub(super) const EMPTY: Self = Self(f32x8::new([f32::NEG_INFINITY; 8]));
+
+    #[inline]
+    fn halves(low: Vec4, high: Vec4) -> Self {
+        let ([a, b, c, d], [e, f, g, h]) = (low.to_array(), high.to_array());
+        Self(f32x8::new([a, b, c, d, e, f, g, h]))
+    }
 
     /// The box of a point.
     #[inline]
     pub(super) fn point(p: Vec3A) -> Self {
-        Self { min: p, max: p }
+        Self::halves((-p).extend(0.0), p.extend(0.0))
+    }
+
+    #[inline]
+    pub(super) fn min(self) -> Vec3A {
+        let [x, y, z, ..] = self.0.to_array();
+        -Vec3A::new(x, y, z)
+    }
+
+    #[inline]
+    pub(super) fn max(self) -> Vec3A {
+        let [.., x, y, z, _] = self.0.to_array();
+        Vec3A::new(x, y, z)
     }
 
     #[inline]
     pub(super) fn union(self, other: Self) -> Self {
-        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+        Self(self.0.max(other.0))
+    }
+
+    /// The empty box instead, without a branch.
+    #[inline]
+    pub(super) fn or_empty(self, empty: bool) -> Self {
+        Self(f32x8::select(Mask::splat(empty), Self::EMPTY.0, self.0))
     }
 
     /// Half of the surface area, 0 for the empty box.
     #[inline]
     pub(super) fn half_area(self) -> f32 {
-        let d = (self.max - self.min).max(Vec3A::ZERO);
+        let d = (self.max() - self.min()).max(Vec3A::ZERO);
         let faces = d * d.yzx();
         faces.x + faces.y + faces.z
     }
@@ -67,17 +87,17 @@ impl Bounds {
     /// Twice the middle: order and ratios are the same, and it costs one instruction.
     #[inline]
     pub(super) fn centre(self) -> Vec3A {
-        self.min + self.max
+        self.min() + self.max()
     }
 
     pub(super) fn aabb(self) -> Aabb {
-        Aabb { min: self.min.into(), max: self.max.into() }
+        Aabb { min: self.min().into(), max: self.max().into() }
     }
 }
 
 impl From<Aabb> for Bounds {
     #[inline]
     fn from(aabb: Aabb) -> Self {
-        Self { min: aabb.min.into(), max: aabb.max.into() }
+        Self::halves((-aabb.min).extend(0.0), aabb.max.extend(0.0))
     }
 }

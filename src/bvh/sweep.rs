@@ -43,7 +43,7 @@ impl Sweep {
     fn new(all: &[Reference; SMALL], count: usize) -> Self {
         let bounds = all.each_ref().map(Reference::bounds);
         let mut orders = [[0; SMALL]; 3];
-        for axis in 0..3 {
+        for (axis, order) in orders.iter_mut().enumerate() {
             // Places beyond the count hold what sorts last.
             let key = |i: usize| if i < count { all[i].centre(axis) } else { f32::INFINITY };
             let keys: [f32; SMALL] = std::array::from_fn(key);
@@ -56,7 +56,7 @@ impl Sweep {
                 let less = bits(low, f32x8::lt) | bits(high, f32x8::lt) << 8;
                 let equal = bits(low, f32x8::equal) | bits(high, f32x8::equal) << 8;
                 let rank = (less | equal & ((1 << i) - 1)).count_ones() as usize;
-                orders[axis][rank % SMALL] = i as u8;
+                order[rank % SMALL] = i as u8;
             }
         }
         Self { bounds, classes: all.each_ref().map(|reference| reference.class), orders }

@@ -37,7 +37,7 @@ impl Choice {
 
     /// The trees of a forest of `i` that are made of the left child; 0 for the node as one tree.
     #[inline]
-    pub(super) fn from_left(self, i: usize) -> usize {
+    pub(super) fn left_trees(self, i: usize) -> usize {
         if i == 1 { 0 } else { (self.0 >> (4 * (i - 1)) & 15) as usize }
     }
 }
