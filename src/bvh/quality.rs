@@ -15,7 +15,7 @@ use crate::geometry::Aabb;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quality {
     /// Sorted along the Morton curve \[LGS09\]: for a first look, or a scene that changes with every frame.
-    /// Built in 0.5 to 0.75 of medium's time; the SAH cost is 1.03 (soup) to 1.25 (kitchen) of medium's.
+    /// Built in 0.5 to 0.65 of medium's time; the SAH cost is 1.03 (soup) to 1.25 (kitchen) of medium's.
     Fast,
     /// Binned SAH \[Wal07\], exact for the last sixteen primitives: for most pictures.
     #[default]

@@ -47,14 +47,16 @@ impl Sweep {
             // Places beyond the count hold what sorts last.
             let key = |i: usize| if i < count { all[i].centre(axis) } else { f32::INFINITY };
             let keys: [f32; SMALL] = std::array::from_fn(key);
-            let half = |from: usize| f32x8::new(std::array::from_fn(|i| keys[from + i]));
-            let (low, high) = (half(0), half(8));
+            let eight = |part: usize| f32x8::from_fn(|i| keys[8 * part + i]);
+            let lanes: [f32x8; SMALL / 8] = std::array::from_fn(eight);
             for (i, &key) in keys[..count].iter().enumerate() {
                 // The rank: how many are less, or equal and before.
                 let key = f32x8::splat(key);
-                let bits = |lanes: f32x8, f: fn(f32x8, f32x8) -> _| Mask::to_bitmask(f(lanes, key));
-                let less = bits(low, f32x8::lt) | bits(high, f32x8::lt) << 8;
-                let equal = bits(low, f32x8::equal) | bits(high, f32x8::equal) << 8;
+                let (mut less, mut equal) = (0, 0);
+                for (part, lanes) in lanes.iter().enumerate() {
+                    less |= lanes.lt(key).to_bitmask() << (8 * part);
+                    equal |= lanes.equal(key).to_bitmask() << (8 * part);
+                }
                 let rank = (less | equal & ((1 << i) - 1)).count_ones() as usize;
                 order[rank % SMALL] = i as u8;
             }

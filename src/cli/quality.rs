@@ -17,7 +17,7 @@ pub(super) struct QualityOption {
 /// A [`Quality`] as it is typed and printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum QualityName {
-    /// Built in two thirds of medium's time, for a first look; rays take up to a quarter more tests
+    /// Built in half to two thirds of medium's time, for a first look; rays take up to twice as long
     Fast,
     /// For most pictures
     Medium,
