@@ -1,8 +1,8 @@
-//! Trees over generated meshes, on one thread and on all. An element is a primitive.
+//! Trees of each quality over generated meshes, on one thread and on all. An element is a primitive.
 
 use criterion::{BatchSize, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use packlight::{
-    bvh::{Bvh, Reference},
+    bvh::{Bvh, Quality, Reference},
     geometry::Triangle,
     load::generate,
 };
@@ -25,10 +25,12 @@ fn build(c: &mut Criterion) {
         group.sampling_mode(SamplingMode::Flat).sample_size(10);
         for (name, threads) in [("1 thread", 1), ("all threads", 0)] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads start");
-            group.bench_function(name, |b| {
-                let run = |references| pool.install(|| Bvh::build(references));
-                b.iter_batched(|| references.clone(), run, BatchSize::LargeInput);
-            });
+            for quality in [Quality::Fast, Quality::Medium, Quality::High] {
+                group.bench_function(format!("{quality:?}, {name}"), |b| {
+                    let run = |references| pool.install(|| Bvh::build_with(references, quality));
+                    b.iter_batched(|| references.clone(), run, BatchSize::LargeInput);
+                });
+            }
         }
     }
 }

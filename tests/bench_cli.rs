@@ -109,6 +109,30 @@ fn threads_and_chunks_do_not_change_the_answer() {
 }
 
 #[test]
+fn quality_changes_the_tree_and_no_hit() {
+    let folder = folder("quality");
+    let shoot = |i: usize| {
+        let (x, y) = ((i % 50) as f32 / 50.0, (i / 50) as f32 / 50.0);
+        [x, y, -1.0, 0.0, 0.1 - x * 0.2, 0.0, 1.0, f32::INFINITY]
+    };
+    let file = write(&folder, "a.rays", rays(&(0..2500).map(shoot).collect::<Vec<_>>()));
+    let run = |quality: &[&str]| {
+        let arguments =
+            [&["--mesh", "gen:soup:2k", "--rays", &file, "--repeat", "1", "--json"], quality].concat();
+        lines(&arguments)[0].clone()
+    };
+    let [plain, fast, medium, high] =
+        [&[][..], &["--quality", "fast"], &["--quality", "medium"], &["--quality", "high"]].map(run);
+    for (line, name) in [(&plain, "medium"), (&fast, "fast"), (&medium, "medium"), (&high, "high")] {
+        assert_eq!(line["quality"], name);
+        assert_eq!((&line["hits"], &line["t_sum"]), (&plain["hits"], &plain["t_sum"]), "{line}");
+    }
+    assert_eq!(plain["bvh_bytes"], medium["bvh_bytes"]);
+    assert_ne!(plain["bvh_bytes"], fast["bvh_bytes"]);
+    refused(&["gen:soup:2k", "--quality", "best"], 2, "fast, medium, high");
+}
+
+#[test]
 fn rays_that_cannot_be_traced_are_counted_misses() {
     let folder = folder("invalid");
     let mesh = write(&folder, "a.obj", TRIANGLE);

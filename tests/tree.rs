@@ -4,7 +4,7 @@
 #![allow(missing_docs)]
 
 use glam::Vec3;
-use packlight::bvh::{BLOCK, Bvh, Kind, MAX_LEAF, Reference, Shape};
+use packlight::bvh::{BLOCK, Bvh, Kind, MAX_LEAF, Quality, Reference, Shape};
 use packlight::geometry::Aabb;
 
 /// A repeatable sequence.
@@ -29,9 +29,16 @@ fn references(boxes: &[Aabb], class: impl Fn(usize) -> u8) -> Vec<Reference> {
     boxes.iter().enumerate().map(reference).collect()
 }
 
-/// Builds and checks all that a tree promises.
+const QUALITIES: [Quality; 3] = [Quality::Fast, Quality::Medium, Quality::High];
+
+/// Builds by every quality and checks all that a tree promises. Returns the tree of medium quality.
 fn sound(boxes: &[Aabb], class: impl Fn(usize) -> u8) -> (Bvh, Shape) {
-    let bvh = Bvh::build(references(boxes, &class));
+    let [_, medium, _] = QUALITIES.map(|quality| sound_by(quality, boxes, &class));
+    medium
+}
+
+fn sound_by(quality: Quality, boxes: &[Aabb], class: impl Fn(usize) -> u8) -> (Bvh, Shape) {
+    let bvh = Bvh::build_with(references(boxes, &class), quality);
     let shape = bvh.validate(boxes).unwrap_or_else(|defect| panic!("{} boxes: {defect}", boxes.len()));
     assert_eq!(shape.primitives, boxes.len());
     assert_eq!(shape.nodes, bvh.nodes().len());
@@ -203,15 +210,22 @@ fn the_tree_is_cheaper_than_median_splits() {
 #[test]
 fn threads_do_not_change_the_tree() {
     let mut random = Random(5);
-    // Enough for the parallel branches of both passes.
-    let boxes = random_boxes(30_000, 0.02, &mut random);
-    let bits = |bounds: [[[f32; 8]; 2]; 3]| bounds.map(|sides| sides.map(|side| side.map(f32::to_bits)));
+    // Enough for the parallel branches of every pass, in several chunks.
+    let boxes = random_boxes(50_000, 0.02, &mut random);
+    QUALITIES.into_iter().for_each(|quality| threads_do_not_change(&boxes, quality));
+}
+
+fn bits(bounds: [[[f32; 8]; 2]; 3]) -> [[[u32; 8]; 2]; 3] {
+    bounds.map(|sides| sides.map(|side| side.map(f32::to_bits)))
+}
+
+fn threads_do_not_change(boxes: &[Aabb], quality: Quality) {
     let build = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| Bvh::build(references(&boxes, |i| u8::from(i % 7 == 0))))
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads start");
+        pool.install(|| Bvh::build_with(references(boxes, |i| u8::from(i % 7 == 0)), quality))
     };
     let one = build(1);
-    one.validate(&boxes).unwrap();
+    one.validate(boxes).expect("a sound tree");
     for threads in [2, 3] {
         let other = build(threads);
         assert_eq!(one.slots(), other.slots());
@@ -219,6 +233,56 @@ fn threads_do_not_change_the_tree() {
         for (a, b) in one.nodes().iter().zip(other.nodes()) {
             assert_eq!(bits(a.bounds), bits(b.bounds));
             assert_eq!(a.children, b.children);
+        }
+    }
+}
+
+/// Boxes of a generated mesh's triangles.
+fn mesh_boxes(spec: &str) -> Vec<Aabb> {
+    let mesh = packlight::load::generate::mesh(spec).expect("a mesh that can be made");
+    let corners = |triangle: &[u32; 3]| triangle.map(|i| mesh.positions[i as usize]);
+    mesh.triangles.iter().map(|triangle| Aabb::of_points(corners(triangle))).collect()
+}
+
+fn cost(shape: &Shape) -> f64 {
+    2.0 * shape.node_cost + shape.primitive_cost
+}
+
+#[test]
+fn quality_buys_a_cheaper_tree() {
+    let mut random = Random(6);
+    // Long boxes that lie across each other, as walls and beams do.
+    let beams: Vec<_> = (0..5000)
+        .map(|i| {
+            let mut size = Vec3::splat(0.01);
+            size[i % 3] = random.unit() * random.unit();
+            let corner = random.vector();
+            Aabb { min: corner, max: corner + size }
+        })
+        .collect();
+    // (least of fast / medium, most of it, most of high / medium)
+    for (boxes, least, most, high_most) in [
+        (beams, 1.0, 1.5, 0.95),
+        (mesh_boxes("soup:20k"), 1.0, 1.1, 0.99),
+        (mesh_boxes("hair:20k"), 1.0, 1.1, 0.985),
+    ] {
+        let [fast, medium, high] = QUALITIES.map(|quality| cost(&sound_by(quality, &boxes, |_| 0).1));
+        println!("fast {:.4}, high {:.4} of medium {medium:.3}", fast / medium, high / medium);
+        assert!((least..most).contains(&(fast / medium)), "fast {fast}, medium {medium}");
+        assert!(high / medium < high_most, "high {high}, medium {medium}");
+    }
+}
+
+#[test]
+fn a_triangle_takes_85_bytes_at_most() {
+    for spec in ["soup:50k", "terrain:50k", "spheres:50k", "hair:50k"] {
+        let boxes = mesh_boxes(spec);
+        for quality in [Quality::Medium, Quality::High] {
+            let bvh = Bvh::build_with(references(&boxes, |_| 0), quality);
+            // A block of eight triangles has nine floats and an id for each.
+            let bytes = size_of_val(bvh.nodes()) + bvh.slots().len() * 40;
+            let each = bytes as f64 / boxes.len() as f64;
+            assert!(each <= 85.0, "{spec}, {quality:?}: {each} bytes a triangle");
         }
     }
 }

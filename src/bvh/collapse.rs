@@ -1,206 +1,235 @@
-//! From two children to eight, by dynamic programming \[YKL17\].
+//! From two children to eight: nodes and slots laid out as [`weigh`](super::weigh) chose.
 //!
-//! C(n, i) is the least SAH cost of the primitives below n as a forest of at most i eight-wide trees:
-//!
-//! ```text
-//! C(n, 1) = min( leaf(n), area(n)·NODE_COST + D(n, 8) )
-//! C(n, i) = min( D(n, i), C(n, i − 1) )          D(n, i) = min over k of C(left, k) + C(right, i − k)
-//! ```
-//!
-//! Areas cancel where costs are compared, so they stay half areas and are never divided by the root's.
+//! The tree is cut into segments: subtrees of up to [`SEGMENT`] places, and between the root and
+//! them one segment a node. Threads outline segments by themselves; once it is known how long they are, each node
+//! has its place, and threads fill nodes in. Segments follow each other depth first, and where they are
+//! cut depends on the tree alone.
+
+use rayon::prelude::*;
 
 use super::{
-    BLOCK, Bvh,
-    build::{self, Binary, MAX_LEAF, Reference},
-    node::{Child, Node},
+    BLOCK,
+    binary::{Binary, Packed, Run},
+    node::{Child, Kind, Node},
+    reference::Reference,
+    weigh::Choices,
 };
-use crate::geometry::Aabb;
 
-/// Cost of testing a node's eight boxes, in tests of one primitive.
-const NODE_COST: f32 = 2.0;
-/// Subtrees of fewer primitives are weighed by one thread.
-const PARALLEL: u32 = 4096;
+/// Places of a segment, at most.
+const SEGMENT: u32 = 4096;
 
-/// How a forest of i trees is made of a node's children: the `i`-th nibble is k, 0 for "one tree less".
-/// The first nibble is 1 where a single tree is a leaf.
-#[derive(Clone, Copy, Debug, Default)]
-struct Choice(u64);
+/// The binary tree, weighed.
+#[derive(Clone, Copy)]
+pub(super) struct Weighed<'a> {
+    pub(super) nodes: &'a [Packed],
+    pub(super) choices: &'a Choices,
+    pub(super) references: &'a [Reference],
+}
 
-impl Choice {
-    fn set(&mut self, i: usize, k: usize) {
-        self.0 = self.0 & !(15 << (4 * i)) | (k as u64) << (4 * i);
-    }
+/// A node of eight before it has a place: which binary nodes its children are, and what is behind them,
+/// counted from the start of the segment.
+#[derive(Clone, Copy)]
+struct Outline {
+    roots: [u32; 8],
+    children: [Child; 8],
+}
 
-    fn get(self, i: usize) -> usize {
-        (self.0 >> (4 * i) & 15) as usize
+impl Outline {
+    const EMPTY: Self = Self { roots: [0; 8], children: [Child::ABSENT; 8] };
+
+    fn set(&mut self, place: usize, run: Run, child: Child) {
+        self.roots[place] = run.root;
+        self.children[place] = child;
     }
 }
 
-type Costs = [f32; 9];
+/// Up to eight subtrees.
+#[derive(Default)]
+struct Forest {
+    runs: [Run; 8],
+    count: usize,
+}
 
-impl Bvh {
-    /// Builds a tree over the references, on the current rayon pool. The same references give the same
-    /// tree for any number of threads.
-    pub fn build(mut references: Vec<Reference>) -> Self {
-        if references.is_empty() {
-            return Self::default();
+impl Forest {
+    fn push(&mut self, run: Run) {
+        self.runs[self.count] = run;
+        self.count += 1;
+    }
+
+    fn places(&self) -> impl Iterator<Item = (usize, Run)> {
+        self.runs.into_iter().take(self.count).enumerate()
+    }
+}
+
+/// A part of the tree.
+struct Segment {
+    /// The binary subtree that it begins with.
+    run: Run,
+    /// One node between the root and the rest: its inner children are the numbers of segments.
+    is_top: bool,
+    outlines: Vec<Outline>,
+    /// What is in its slots, a list of whole blocks for each class.
+    slots: Vec<Vec<u32>>,
+}
+
+/// Where a segment's nodes and its slots of each class begin.
+#[derive(Clone)]
+struct Start {
+    node: u32,
+    slots: Vec<u32>,
+}
+
+/// Lays out nodes and slots.
+pub(super) fn collapse(tree: Weighed<'_>) -> (Vec<Node>, Vec<u32>) {
+    let mut segments = vec![];
+    tree.cut(Run::all(tree.nodes), &mut segments);
+    segments.par_iter_mut().with_max_len(1).for_each(|segment| tree.outline(segment));
+
+    let mut owners = vec![];
+    for (i, segment) in segments.iter().enumerate() {
+        owners.resize(owners.len() + segment.outlines.len(), i as u32);
+    }
+    let (starts, slots) = place(&segments);
+    let fill = |(at, &owner): (usize, &u32)| {
+        let (segment, start) = (&segments[owner as usize], &starts[owner as usize]);
+        let outline = &segment.outlines[at - start.node as usize];
+        let mut node = Node::EMPTY;
+        for place in 0..8 {
+            let root = outline.roots[place];
+            let child = match outline.children[place].kind() {
+                Kind::Absent => continue,
+                Kind::Inner(number) if segment.is_top => Child::inner(starts[number as usize].node),
+                Kind::Inner(index) => Child::inner(start.node + index),
+                Kind::Leaf { first, count } => Child::leaf(start.slots[tree.class(root)] + first, count),
+            };
+            node.set(place, tree.node(root).bounds, child);
         }
-        let binary = build::build(&mut references);
-        let mut choices = vec![Choice::default(); binary.len()];
-        weigh(&binary, &mut choices, &references);
-        let mut emitter =
-            Emitter { binary: &binary, choices: &choices, nodes: vec![Node::EMPTY], leaves: vec![] };
-        emitter.root();
-        let Emitter { mut nodes, leaves, .. } = emitter;
-        let slots = assign_slots(&mut nodes, &leaves, &binary, &references);
-        let Aabb { min, max } = binary[0].bounds;
-        Self { nodes, slots, reach: min.abs().max(max.abs()) }
-    }
+        node
+    };
+    (owners.par_iter().enumerate().map(fill).collect(), slots)
 }
 
-/// Fills in the choices below `nodes[0]` and returns C(·, 1..=8).
-fn weigh(nodes: &[Binary], choices: &mut [Choice], references: &[Reference]) -> Costs {
-    let node = &nodes[0];
-    let area = node.bounds.half_area();
-    let mut costs = [f32::INFINITY; 9];
-    if node.is_leaf() {
-        costs[1..].fill(area * node.count as f32);
-        choices[0].set(0, 1);
-        return costs;
+/// Segments one after the other; slots class by class.
+fn place(segments: &[Segment]) -> (Vec<Start>, Vec<u32>) {
+    let classes = segments.iter().map(|segment| segment.slots.len()).max().unwrap_or(0);
+    let mut node = 0;
+    let mut starts = vec![];
+    for segment in segments {
+        starts.push(Start { node, slots: vec![0; classes] });
+        node += segment.outlines.len() as u32;
     }
-    let right = node.right as usize;
-    let (left_nodes, right_nodes) = (&nodes[1..right], &nodes[right..]);
-    let (choice, rest) = choices.split_first_mut().expect("a node has a choice");
-    let (left_choices, right_choices) = rest.split_at_mut(right - 1);
-    let (left, right) = if node.count < PARALLEL {
-        (weigh(left_nodes, left_choices, references), weigh(right_nodes, right_choices, references))
-    } else {
-        rayon::join(
-            || weigh(left_nodes, left_choices, references),
-            || weigh(right_nodes, right_choices, references),
-        )
-    };
-    for i in 2..=8 {
-        for k in 1..i {
-            let cost = left[k] + right[i - k];
-            if cost < costs[i] {
-                costs[i] = cost;
-                choice.set(i, k);
+    let mut slots =
+        Vec::with_capacity(segments.iter().flat_map(|segment| &segment.slots).map(Vec::len).sum());
+    for class in 0..classes {
+        for (segment, start) in segments.iter().zip(&mut starts) {
+            start.slots[class] = slots.len() as u32;
+            slots.extend_from_slice(segment.slots.get(class).map_or(&[], Vec::as_slice));
+        }
+    }
+    (starts, slots)
+}
+
+impl Weighed<'_> {
+    /// The class of the references below a leaf.
+    fn class(&self, root: u32) -> usize {
+        usize::from(self.references[self.node(root).first as usize].class)
+    }
+
+    fn node(&self, root: u32) -> Binary {
+        Binary::unpack(&self.nodes[root as usize])
+    }
+
+    fn is_leaf(&self, run: Run) -> bool {
+        self.choices.of(run.root).leaf_count() != 0
+    }
+
+    /// Cuts a subtree into segments and returns the number of the first.
+    fn cut(&self, run: Run, segments: &mut Vec<Segment>) -> u32 {
+        let number = segments.len();
+        let is_top = run.places > SEGMENT && !self.is_leaf(run);
+        segments.push(Segment { run, is_top, outlines: vec![], slots: vec![] });
+        if is_top {
+            segments[number].outlines.push(Outline::EMPTY);
+            for (place, child) in self.forest(run).places() {
+                let what = if self.is_leaf(child) {
+                    self.leaf(child, &mut segments[number].slots)
+                } else {
+                    Child::inner(self.cut(child, segments))
+                };
+                segments[number].outlines[0].set(place, child, what);
             }
         }
-    }
-    costs[1] = area * NODE_COST + costs[8];
-    let leaf_cost = area * node.count as f32;
-    if node.count as usize <= MAX_LEAF && leaf_cost <= costs[1] && is_uniform(node, references) {
-        costs[1] = leaf_cost;
-        choice.set(0, 1);
-    }
-    // The eighth choice stays: it is how the node itself is filled, and a node has all its places.
-    for i in 2..8 {
-        if costs[i - 1] <= costs[i] {
-            costs[i] = costs[i - 1];
-            choice.set(i, 0);
-        }
-    }
-    costs
-}
-
-fn is_uniform(node: &Binary, references: &[Reference]) -> bool {
-    let run = &references[node.first as usize..(node.first + node.count) as usize];
-    run.iter().all(|r| r.class == run[0].class)
-}
-
-/// A leaf that waits for its slots: where it hangs, and which binary node it is.
-struct Pending {
-    node: u32,
-    place: u32,
-    binary: u32,
-}
-
-struct Emitter<'a> {
-    binary: &'a [Binary],
-    choices: &'a [Choice],
-    nodes: Vec<Node>,
-    leaves: Vec<Pending>,
-}
-
-impl Emitter<'_> {
-    fn root(&mut self) {
-        if self.choices[0].get(0) == 1 {
-            self.attach(0, 0, 0);
-        } else {
-            self.expand(0, 0);
-        }
+        number as u32
     }
 
-    /// Fills the eight-wide node `at` with the forest below the binary node `from`.
-    fn expand(&mut self, at: usize, from: usize) {
-        let mut roots = [0usize; 8];
-        let mut count = 0;
-        self.forest(from, 8, true, &mut roots, &mut count);
-        for (place, &root) in roots[..count].iter().enumerate() {
-            self.attach(at, place, root);
-        }
-    }
-
-    /// Hangs the tree of a binary node into a place; inner nodes follow depth first.
-    fn attach(&mut self, at: usize, place: usize, root: usize) {
-        let bounds = self.binary[root].bounds;
-        if self.choices[root].get(0) == 1 {
-            self.leaves.push(Pending { node: at as u32, place: place as u32, binary: root as u32 });
-            self.nodes[at].set(place, bounds, Child::ABSENT);
-        } else {
-            let index = self.nodes.len();
-            self.nodes.push(Node::EMPTY);
-            self.nodes[at].set(place, bounds, Child::inner(index as u32));
-            self.expand(index, root);
-        }
-    }
-
-    /// The roots of the forest of at most `i` trees below a binary node. `open` says that the node
-    /// itself is being filled, so that it is never its own child.
-    fn forest(&self, from: usize, i: usize, open: bool, roots: &mut [usize; 8], count: &mut usize) {
-        let choice = self.choices[from];
-        let mut i = i;
-        while !open && i > 1 && choice.get(i) == 0 {
-            i -= 1;
-        }
-        if i == 1 || self.binary[from].is_leaf() {
-            roots[*count] = from;
-            *count += 1;
+    /// Outlines a segment that is not of the top.
+    fn outline(&self, segment: &mut Segment) {
+        if segment.is_top {
             return;
         }
-        let k = choice.get(i);
-        self.forest(from + 1, k, false, roots, count);
-        self.forest(from + self.binary[from].right as usize, i - k, false, roots, count);
-    }
-}
-
-/// Gives each leaf its slots: classes ascending, depth first within a class, no leaf across blocks.
-fn assign_slots(
-    nodes: &mut [Node],
-    leaves: &[Pending],
-    binary: &[Binary],
-    references: &[Reference],
-) -> Vec<u32> {
-    let mut classes: Vec<u8> =
-        leaves.iter().map(|leaf| references[binary[leaf.binary as usize].first as usize].class).collect();
-    let order = classes.clone();
-    classes.sort_unstable();
-    classes.dedup();
-    let mut slots = Vec::with_capacity(references.len() + references.len() / 8 + BLOCK);
-    for class in classes {
-        for (leaf, _) in leaves.iter().zip(&order).filter(|&(_, &c)| c == class) {
-            let node = &binary[leaf.binary as usize];
-            let (first, count) = (node.first as usize, node.count as usize);
-            if slots.len() % BLOCK + count > BLOCK {
-                slots.resize(slots.len().next_multiple_of(BLOCK), u32::MAX);
-            }
-            let child = Child::leaf(slots.len() as u32, node.count);
-            nodes[leaf.node as usize].children[leaf.place as usize] = child;
-            slots.extend(references[first..first + count].iter().map(|r| r.index));
+        if self.is_leaf(segment.run) {
+            let mut lone = Outline::EMPTY;
+            lone.set(0, segment.run, self.leaf(segment.run, &mut segment.slots));
+            segment.outlines.push(lone);
+        } else {
+            self.expand(segment.run, segment);
         }
-        slots.resize(slots.len().next_multiple_of(BLOCK), u32::MAX);
     }
-    slots
+
+    /// Outlines a node and what is below it, depth first; returns its index.
+    fn expand(&self, run: Run, segment: &mut Segment) -> u32 {
+        let index = segment.outlines.len();
+        segment.outlines.push(Outline::EMPTY);
+        for (place, child) in self.forest(run).places() {
+            let what = if self.is_leaf(child) {
+                self.leaf(child, &mut segment.slots)
+            } else {
+                Child::inner(self.expand(child, segment))
+            };
+            segment.outlines[index].set(place, child, what);
+        }
+        index as u32
+    }
+
+    /// Puts a leaf's references into slots, none across blocks.
+    fn leaf(&self, run: Run, slots: &mut Vec<Vec<u32>>) -> Child {
+        let first = self.node(run.root).first as usize;
+        let references = &self.references[first..][..self.choices.of(run.root).leaf_count()];
+        let class = usize::from(references[0].class);
+        if slots.len() <= class {
+            slots.resize(class + 1, vec![]);
+        }
+        let slots = &mut slots[class];
+        let filled = slots.iter().rposition(|&slot| slot != u32::MAX).map_or(0, |last| last + 1);
+        let begin =
+            if filled % BLOCK + references.len() > BLOCK { filled.next_multiple_of(BLOCK) } else { filled };
+        slots.resize((begin + references.len()).next_multiple_of(BLOCK), u32::MAX);
+        for (slot, reference) in slots[begin..].iter_mut().zip(references) {
+            *slot = reference.index;
+        }
+        Child::leaf(begin as u32, references.len() as u32)
+    }
+
+    /// The roots of the forest that fills a node of eight.
+    fn forest(&self, run: Run) -> Forest {
+        let mut forest = Forest::default();
+        // The node itself is being filled, so it is not its own child.
+        let from_left = self.choices.of(run.root).left_trees(8);
+        let [left, right] = run.children(self.nodes);
+        self.trees(left, from_left, &mut forest);
+        self.trees(right, 8 - from_left, &mut forest);
+        forest
+    }
+
+    /// The roots of a forest of at most `i` trees below a node.
+    fn trees(&self, run: Run, i: usize, forest: &mut Forest) {
+        let from_left = self.choices.of(run.root).left_trees(i);
+        if from_left == 0 {
+            forest.push(run);
+            return;
+        }
+        let [left, right] = run.children(self.nodes);
+        self.trees(left, from_left, forest);
+        self.trees(right, i - from_left, forest);
+    }
 }

@@ -4,25 +4,39 @@
 //! class into *slots*, eight to a block, and it hands ranges of slots to whoever knows what is in them
 //! ([`Leaves`]).
 //!
-//! Build: binned SAH \[Wal07\] to a binary tree, collapsed to eight children by dynamic programming
-//! \[YKL17\]. Traversal: a packet of eight rays or a single one, closest hit and occlusion from one body.
+//! Build, by one of three qualities ([`Quality`]): a binary tree, by binned SAH \[Wal07\] (`build`, and
+//! `sweep` near the leaves) or along the Morton curve \[LGS09\] (`morton`), optimised by reinsertion
+//! \[MB18\] (`reinsert`); then collapsed to eight children by dynamic programming \[YKL17\] (`weigh`
+//! decides, `collapse` lays out). Traversal: a packet of eight rays or a single one, closest hit and occlusion from one body.
 
 mod beam;
+mod binary;
+mod bins;
 mod build;
 mod collapse;
 mod cost;
 mod entry;
+mod links;
+mod morton;
 mod node;
 mod packet;
+mod partition;
+mod quality;
+mod reference;
+mod reinsert;
 mod run;
 mod single;
 mod stream;
+mod sweep;
 mod tile;
 mod validate;
 mod wave;
+mod weigh;
 
-pub use build::{MAX_LEAF, Reference};
+pub use build::MAX_LEAF;
 pub use node::{Child, Kind, Node};
+pub use quality::Quality;
+pub use reference::Reference;
 pub use stream::{Stream, Tracer, Way};
 pub use validate::{Defect, Shape};
 use wave::Wave;

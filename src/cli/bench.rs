@@ -10,12 +10,13 @@ use glam::DAffine3;
 use super::{
     console,
     failure::{Failure, warn, warn_of},
+    quality::QualityOption,
     source::{Source, definition},
     threads,
 };
 use crate::{
     bvh::Way,
-    compile::{Scene, compile},
+    compile::{Scene, compile_with},
     geometry::ray_file::{RayFile, encode},
     load::load_mesh,
     render::{Query, RayClass, measure, ray_classes},
@@ -60,6 +61,9 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "K", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     repeat: u32,
 
+    #[command(flatten)]
+    quality: QualityOption,
+
     /// One JSON object a class on stdout, a line each, without the single-ray path
     #[arg(long)]
     json: bool,
@@ -73,7 +77,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn bench(arguments: &Arguments) -> Result<(), Failure> {
     // Before the scene: a slip in the name of a file should not cost the time to build a tree.
     let file = arguments.read_rays()?;
-    let scene = compile(&arguments.describe()?)?;
+    let scene = compile_with(&arguments.describe()?, arguments.quality.quality())?;
     let (classes, invalid) = match file {
         Some((class, invalid)) => (vec![class], invalid),
         None => (ray_classes(&scene), 0),

@@ -10,11 +10,12 @@ use super::{
     failure::Failure,
     memory,
     overrides::IntegratorName,
+    quality::{QualityName, QualityOption},
     quantity::{grouped, mebibytes, time},
     source::Source,
 };
 use crate::{
-    compile::{Summary, compile},
+    compile::{Summary, compile_with},
     scene::{Integrator, Projection, SceneDescription},
     simd::cpu,
 };
@@ -25,6 +26,9 @@ pub(super) struct Arguments {
     #[command(flatten)]
     source: Source,
 
+    #[command(flatten)]
+    quality: QualityOption,
+
     /// One JSON object on stdout
     #[arg(long)]
     json: bool,
@@ -33,7 +37,7 @@ pub(super) struct Arguments {
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (description, load_time) = arguments.source.load()?;
-    let summary = compile(&description)?.summary();
+    let summary = compile_with(&description, arguments.quality.quality())?.summary();
     let scene = arguments.source.path.display().to_string();
     let info = Info::new(scene, &description, summary, load_time);
     if arguments.json { console::print_json(&info) } else { console::print(&info.to_string()) }
@@ -52,6 +56,7 @@ struct Info {
     bvh_nodes: u64,
     bvh_bytes: u64,
     bvh_seconds: f64,
+    quality: &'static str,
     load_seconds: f64,
     /// The most memory the program has had, the description of the scene included; absent where the system
     /// does not say.
@@ -90,6 +95,7 @@ impl Info {
             bvh_nodes: summary.bvh_nodes,
             bvh_bytes: summary.bvh_bytes,
             bvh_seconds: summary.bvh_time.as_secs_f64(),
+            quality: QualityName::from(summary.quality).name(),
             load_seconds: load_time.as_secs_f64(),
             peak_memory_bytes: memory::peak(),
             width: sensor.film.width,
@@ -130,7 +136,15 @@ impl fmt::Display for Info {
             ("quadrics", grouped(self.quadrics)),
             ("materials", grouped(self.materials.into())),
             ("lights", grouped(self.lights.into())),
-            ("BVH", format!("{} nodes, {}", grouped(self.bvh_nodes), mebibytes(self.bvh_bytes))),
+            (
+                "BVH",
+                format!(
+                    "{} nodes, {}, {} quality",
+                    grouped(self.bvh_nodes),
+                    mebibytes(self.bvh_bytes),
+                    self.quality
+                ),
+            ),
             ("time", format!("load {}, BVH {}", seconds(self.load_seconds), seconds(self.bvh_seconds))),
             (
                 "memory",
@@ -164,7 +178,9 @@ mod tests {
     #[test]
     fn the_table_holds_what_was_compiled() {
         let text = info().to_string();
-        for part in ["69,451", "3.0 MiB", "768 x 576", "perspective, 42.31 degrees", "path", "f32x8"] {
+        for part in
+            ["69,451", "3.0 MiB, medium quality", "768 x 576", "perspective, 42.31 degrees", "path", "f32x8"]
+        {
             assert!(text.contains(part), "{part} is not in\n{text}");
         }
     }

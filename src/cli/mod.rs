@@ -11,6 +11,7 @@ mod memory;
 mod output;
 mod overrides;
 mod progress;
+mod quality;
 mod quantity;
 mod render;
 mod report;

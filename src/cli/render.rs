@@ -11,12 +11,13 @@ use super::{
     output::Output,
     overrides::{IntegratorName, MAX_SIDE, Overrides},
     progress::Bar,
+    quality::QualityOption,
     report::{Report, Sources},
     source::Source,
     threads,
 };
 use crate::{
-    compile::compile,
+    compile::compile_with,
     picture::{Format, Preview, save},
     render::{self, Settings},
 };
@@ -66,6 +67,9 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "NAME", help_heading = MACHINE, default_value = "packet")]
     backend: Backend,
 
+    #[command(flatten, next_help_heading = MACHINE)]
+    quality: QualityOption,
+
     /// Shade hits as they come, not sorted by material: for measurement
     #[arg(long, help_heading = MACHINE)]
     no_sort: bool,
@@ -111,7 +115,7 @@ fn picture(arguments: &Arguments) -> Result<Report, Failure> {
         warn_of("--exposure only changes a .png; the numbers of this file stay linear");
     }
 
-    let scene = compile(&description)?;
+    let scene = compile_with(&description, arguments.quality.quality())?;
     let settings = arguments.settings();
     let bar = Bar::new(arguments.quiet);
     let start = Instant::now();

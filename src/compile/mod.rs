@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 pub use primitives::Primitives;
 pub use surfaces::Surface;
 
-use crate::bvh::{Bvh, Child, Reference};
+use crate::bvh::{Bvh, Child, Quality, Reference};
 use crate::camera::Camera;
 use crate::light::{Light, LightId};
 use crate::material::MaterialTable;
@@ -61,8 +61,10 @@ pub struct Summary {
     pub bvh_nodes: u64,
     /// Bytes that tracing reads: nodes and primitive blocks.
     pub bvh_bytes: u64,
-    /// Time to build the tree.
+    /// Time from boxes to everything that tracing reads: tree and primitive blocks.
     pub bvh_time: Duration,
+    /// How much work went into the tree.
+    pub quality: Quality,
 }
 
 impl Scene {
@@ -89,11 +91,19 @@ pub enum CompileError {
 /// Padding of blocks takes some of the slots that a child's word can name.
 const MAX_PRIMITIVES: u64 = Child::LIMIT as u64 / 2;
 
-/// Builds columns, lights, materials and the tree, on the current rayon pool.
+/// [`compile_with`] the default quality.
 ///
 /// # Errors
 /// [`CompileError`].
 pub fn compile(description: &SceneDescription) -> Result<Scene, CompileError> {
+    compile_with(description, Quality::default())
+}
+
+/// Builds columns, lights, materials and the tree, on the current rayon pool.
+///
+/// # Errors
+/// [`CompileError`].
+pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<Scene, CompileError> {
     let (materials, textures, material_ids) = materials::compile(&description.materials);
     let mut lights = lights::without_surface(&description.emitters);
     let shapes::Shapes { surfaces, references, degenerate } =
@@ -102,7 +112,7 @@ pub fn compile(description: &SceneDescription) -> Result<Scene, CompileError> {
     let quadrics = (surfaces.spheres.len() + surfaces.canonicals.len()) as u64;
 
     let start = Instant::now();
-    let bvh = Bvh::build(references);
+    let bvh = Bvh::build_with(references, quality);
     let primitives = Primitives::new(bvh.slots(), |id| surfaces.primitive(id));
     let bvh_time = start.elapsed();
 
@@ -115,6 +125,7 @@ pub fn compile(description: &SceneDescription) -> Result<Scene, CompileError> {
         bvh_nodes: bvh.nodes().len() as u64,
         bvh_bytes: (size_of_val(bvh.nodes()) + primitives.bytes()) as u64,
         bvh_time,
+        quality,
     };
     let environments = (0..lights.len()).filter(|&i| lights[i].environment().is_some());
     let environments = environments.map(|i| LightId(i as u32)).collect();

@@ -5,6 +5,7 @@ use std::{fmt, time::Duration};
 use serde::Serialize;
 
 use crate::{
+    cli::quality::QualityName,
     cli::quantity::{counted, grouped, mebibytes, mega_per_second, time},
     compile::Summary,
     render::{
@@ -22,6 +23,7 @@ pub(super) struct Row {
     t_sum: f64,
     build_s: f64,
     bvh_bytes: u64,
+    quality: &'static str,
     class: &'static str,
     query: &'static str,
     rays: u64,
@@ -49,6 +51,7 @@ impl Row {
             t_sum: timed.t_sum,
             build_s: summary.bvh_time.as_secs_f64(),
             bvh_bytes: summary.bvh_bytes,
+            quality: QualityName::from(summary.quality).name(),
             class: class.name,
             query: match class.query {
                 Query::Closest => "closest",
@@ -119,14 +122,15 @@ impl Build {
 
 impl fmt::Display for Build {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Summary { triangles, quadrics, bvh_nodes, bvh_bytes, bvh_time, .. } = self.summary;
+        let Summary { triangles, quadrics, bvh_nodes, bvh_bytes, bvh_time, quality, .. } = self.summary;
         let primitives = triangles + quadrics;
         let each = if primitives == 0 { 0.0 } else { bvh_bytes as f64 / primitives as f64 };
         writeln!(f, "{}", self.name)?;
         writeln!(f, "  {}, {}", counted(triangles, "triangle"), counted(quadrics, "quadric"))?;
         writeln!(
             f,
-            "  tree: {}, {:.2} M primitives/s on {}; {}, {}, {each:.0} bytes a primitive",
+            "  tree of {} quality: {}, {:.2} M primitives/s on {}; {}, {}, {each:.0} bytes a primitive",
+            QualityName::from(quality),
             time(Duration::from_secs_f64(bvh_time.as_secs_f64())),
             mega_per_second(primitives, bvh_time),
             counted(rayon::current_num_threads() as u64, "thread"),

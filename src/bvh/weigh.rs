@@ -1,0 +1,118 @@
+//! Which binary nodes become nodes of eight, by dynamic programming \[YKL17\].
+//!
+//! C(n, i) is the least SAH cost of the primitives below n as a forest of at most i eight-wide trees:
+//!
+//! ```text
+//! C(n, 1) = min( leaf(n), area(n)·NODE_COST + D(n, 8) )
+//! C(n, i) = min( D(n, i), C(n, 1) )          D(n, i) = min over k of C(left, k) + C(right, i − k)
+//! ```
+//!
+//! The paper has C(n, i − 1) in place of C(n, 1): the same, since D does not grow with i, in floats
+//! either. Areas cancel where costs are compared, so they stay half areas and are never divided by the
+//! root's.
+
+use super::{
+    MAX_LEAF,
+    binary::{Binary, Packed},
+    reference::Reference,
+};
+use crate::simd::{Bits, Real, f32x8, u32x8};
+
+/// Cost of testing a node's eight boxes, in tests of one primitive.
+const NODE_COST: f32 = 2.0;
+/// Subtrees of fewer places are weighed by one thread.
+const PARALLEL: usize = 8192;
+
+/// How forests of i = 1 to 8 trees are made of a node's children, a nibble each: k, or 0 for one tree.
+/// The first is the count of references where that tree is a leaf.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Choice(u32);
+
+impl Choice {
+    /// References of the node as a leaf; 0 if it is none.
+    #[inline]
+    pub(super) fn leaf_count(self) -> usize {
+        (self.0 & 15) as usize
+    }
+
+    /// The trees of a forest of `i` that are made of the left child; 0 for the node as one tree.
+    #[inline]
+    pub(super) fn left_trees(self, i: usize) -> usize {
+        if i == 1 { 0 } else { (self.0 >> (4 * (i - 1)) & 15) as usize }
+    }
+}
+
+/// The choices of all nodes.
+pub(super) struct Choices(Vec<u32>);
+
+impl Choices {
+    pub(super) fn new(nodes: &[Packed], references: &[Reference]) -> Self {
+        let mut choices = vec![0; nodes.len()];
+        weigh(nodes, &mut choices, references);
+        Self(choices)
+    }
+
+    /// The choice of a node.
+    #[inline]
+    pub(super) fn of(&self, node: u32) -> Choice {
+        Choice(self.0[node as usize])
+    }
+}
+
+/// C(·, 1..=8), a lane each.
+type Costs = f32x8;
+
+/// Fills in the choices for the run of `nodes[0]`. Returns the costs and the number of references.
+fn weigh(nodes: &[Packed], choices: &mut [u32], references: &[Reference]) -> (Costs, usize) {
+    let node = Binary::unpack(&nodes[0]);
+    let area = node.bounds.half_area();
+    if node.is_leaf() {
+        let count = node.leaf_count();
+        choices[0] = count as u32;
+        return (Costs::splat(area * count as f32), count);
+    }
+    let (left_nodes, right_nodes) = nodes[1..].split_at(node.right() - 1);
+    let (choice, rest) = choices.split_first_mut().expect("a node has a choice");
+    let (left_choices, right_choices) = rest.split_at_mut(node.right() - 1);
+    let mut left = || weigh(left_nodes, left_choices, references);
+    let mut right = || weigh(right_nodes, right_choices, references);
+    let ((left, left_count), (right, right_count)) =
+        if nodes.len() < PARALLEL { (left(), right()) } else { rayon::join(left, right) };
+    let (distributed, from_left) = distribute(left, right);
+    let count = left_count + right_count;
+    let mut single = area * NODE_COST + distributed.lane(7);
+    let mut leaf_count = 0;
+    if count <= MAX_LEAF {
+        let run = &references[node.first as usize..][..count];
+        let leaf_cost = area * count as f32;
+        if leaf_cost <= single && run.iter().all(|reference| reference.class == run[0].class) {
+            (single, leaf_count) = (leaf_cost, count);
+        }
+    }
+    let single = Costs::splat(single);
+    let lone = single.le(distributed);
+    let nibbles = u32x8::select(lone, u32x8::splat(0), from_left).to_array();
+    // The eighth stays: it is how the node itself is filled, and a node has all its places.
+    let eighth = from_left.lane(7) << 28;
+    *choice = (1..7).fold(leaf_count as u32 | eighth, |bits, i| bits | nibbles[i] << (4 * i));
+    (Costs::min(single, distributed), count)
+}
+
+/// D(·, 1..=8), infinite for 1, and the k of each.
+#[inline]
+fn distribute(left: Costs, right: Costs) -> (Costs, u32x8) {
+    // Right costs, i − k lanes further on.
+    let mut shifted = [f32::INFINITY; 16];
+    shifted[8..].copy_from_slice(&right.to_array());
+    let left = left.to_array();
+    let mut least = Costs::splat(f32::INFINITY);
+    let mut from_left = u32x8::splat(0);
+    for k in 1..8 {
+        let right = Costs::from_fn(|lane| shifted[8 - k + lane]);
+        let cost = Costs::splat(left[k - 1]) + right;
+        let less = cost.lt(least);
+        least = Costs::select(less, cost, least);
+        from_left = u32x8::select(less, u32x8::splat(k as u32), from_left);
+    }
+    (least, from_left)
+}
