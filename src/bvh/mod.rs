@@ -44,7 +44,7 @@ use wave::Wave;
 use glam::Vec3;
 
 use crate::geometry::{Hit, Pencils, PrimitiveId, Ray, Rayx8};
-use crate::simd::{Bits, Mask8, Real, f32x8, u32x8};
+use crate::simd::{Bits, LANES, Mask8, Real, f32x8, transpose, u32x8};
 
 /// Slots in a block. A leaf never crosses from one block into the next.
 pub const BLOCK: usize = 8;
@@ -89,6 +89,17 @@ impl Hitx8 {
             v: f32x8::select(hit, self.v, none.v),
             primitive: u32x8::select(hit, self.primitive, none.primitive),
         }
+    }
+
+    /// The hits, one by one.
+    #[inline]
+    fn to_hits(self) -> [Hit; LANES] {
+        let id = f32x8::from_bits(self.primitive);
+        let rows = transpose([self.t, self.u, self.v, id, self.t, self.u, self.v, id]);
+        rows.map(|row| {
+            let [t, u, v, id, ..] = row.to_array();
+            Hit { t, u, v, primitive: PrimitiveId(id.to_bits()) }
+        })
     }
 
     /// The hit of a lane.

@@ -39,11 +39,11 @@ impl Run {
     fn load<S: Stream>(&mut self, stream: &S, first: usize) {
         (self.first, self.len) = (first, RUN.min(stream.len() - first));
         for packet in 0..PACKETS {
-            (self.rays[packet], self.active[packet]) = if packet * LANES < self.len {
-                stream.packet(first + packet * LANES)
-            } else {
-                (self.rays[packet], Mask8::splat(false))
-            };
+            self.active[packet] = Mask8::splat(false);
+            if packet * LANES < self.len {
+                let (rays, active) = stream.packet(first + packet * LANES);
+                (self.rays[packet], self.active[packet]) = (rays, active);
+            }
         }
     }
 
@@ -103,9 +103,9 @@ struct Habit {
 
 impl Habit {
     fn choose_together(&mut self) -> bool {
-        let cheaper = self.together <= self.alone;
+        let cheaper = self.alone == 0.0 || self.together <= self.alone;
         self.turn = (self.turn + 1) % PROBE;
-        if self.turn == 0 { !cheaper } else { cheaper }
+        if self.turn == 1 { !cheaper } else { cheaper }
     }
 }
 

@@ -8,7 +8,7 @@
 use super::{
     Bvh, Hitx8, Leaves, Tally, Traversal, Wave,
     cost::Cost,
-    run::{Run, Runs},
+    run::{PACKETS, Run, Runs},
 };
 use crate::geometry::{Hit, Rayx8};
 use crate::simd::{LANES, Mask, Mask8, Real, f32x8};
@@ -105,7 +105,8 @@ impl Bvh {
         if !run.active.iter().all(|active| active.all()) {
             return None;
         }
-        let mut hits = run.rays.each_ref().map(|ray| Hitx8::nothing(ray.t_far));
+        let mut hits = [Hitx8::nothing(f32x8::zero()); PACKETS];
+        hits.iter_mut().zip(&run.rays).for_each(|(hit, ray)| hit.t = ray.t_far);
         let cost = self.intersect_tile::<ANY, L, T>(leaves, &run.rays, &mut hits, traversal)?;
         for (i, hit) in hits.iter().enumerate() {
             answer::<ANY, S>(stream, run.first + i * LANES, Mask8::splat(true), hit);
@@ -149,8 +150,7 @@ fn answer<const ANY: bool, S: Stream>(stream: &mut S, first: usize, active: Mask
         let blocked = (hit.t.equal(f32x8::splat(f32::NEG_INFINITY)) & active).to_bitmask();
         std::array::from_fn(|lane| if blocked >> lane & 1 != 0 { Hit::BLOCKED } else { Hit::MISS })
     } else {
-        let hit = hit.or_miss(active);
-        std::array::from_fn(|lane| hit.lane(lane))
+        hit.or_miss(active).to_hits()
     };
     stream.answer_packet(first, &hits[..lanes]);
 }

@@ -57,14 +57,26 @@ impl Ray32 {
     }
 
     /// The packet of up to eight rays; lanes beyond the last are [`Ray32::NEVER`].
-    #[inline]
+    #[inline(always)]
     pub fn packet(rays: &[Self]) -> Rayx8 {
-        let rows = match rays.first_chunk::<LANES>() {
-            Some(rays) => rays.map(Self::to_array),
-            None => std::array::from_fn(|lane| rays.get(lane).unwrap_or(&Self::NEVER).to_array()),
-        };
-        let [ox, oy, oz, near, dx, dy, dz, far] = transpose(rows.map(f32x8::new));
+        match rays.first_chunk() {
+            Some(rays) => Self::whole_packet(rays),
+            None => Self::padded_packet(rays),
+        }
+    }
+
+    #[inline(always)]
+    fn whole_packet(rays: &[Self; LANES]) -> Rayx8 {
+        // One by one: mapped as an array, the rays would be copied first.
+        let row = |i: usize| f32x8::new(rays[i].to_array());
+        let rows = [row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)];
+        let [ox, oy, oz, near, dx, dy, dz, far] = transpose(rows);
         RayLanes::new(vector3(ox, oy, oz), vector3(dx, dy, dz), near, far)
+    }
+
+    #[cold]
+    fn padded_packet(rays: &[Self]) -> Rayx8 {
+        Self::whole_packet(&std::array::from_fn(|i| *rays.get(i).unwrap_or(&Self::NEVER)))
     }
 
     #[inline]
