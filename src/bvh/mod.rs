@@ -7,7 +7,8 @@
 //! Build, by one of three qualities ([`Quality`]): a binary tree, by binned SAH \[Wal07\] (`build`, and
 //! `sweep` near the leaves) or along the Morton curve \[LGS09\] (`morton`), optimised by reinsertion
 //! \[MB18\] (`reinsert`); then collapsed to eight children by dynamic programming \[YKL17\] (`weigh`
-//! decides, `collapse` lays out). Traversal: a packet of eight rays or a single one, closest hit and occlusion from one body.
+//! decides, `collapse` lays out). Traversal: tiles of sixty-four rays, packets of eight, sixteen single rays
+//! in turn, or one ray alone, the reference for the others; closest hit and occlusion from one body each.
 
 mod beam;
 mod binary;

@@ -1,8 +1,9 @@
 //! Sixty-four rays through the tree together: eight packets into one octant.
 //!
 //! A node is tested by the bounds of all rays against its eight boxes (lanes are boxes), then by the bounds
-//! of the eight packets against each box that is left (lanes are packets); only where a leaf hangs do the
-//! rays themselves test its box. A step that a packet would take eight times is so taken once.
+//! of the eight packets against each box that is left (lanes are packets). At a leaf, the planes through a
+//! triangle's edges and the common origin cull packets, and the kernel decides about the others. A step that
+//! a packet would take eight times is so taken once.
 
 use super::{Bvh, Child, Hitx8, Kind, Leaves, Node, Tally, Traversal, beam::Beam, cost::Cost, run::PACKETS};
 use crate::geometry::Rayx8;
