@@ -2,10 +2,17 @@
 
 use std::hint::black_box;
 
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use glam::Vec3;
 use packlight::{
-    material::{Bsdf, Conductor, Dielectric, Lambert, Phong},
+    compile::compile,
+    load::{LoadOptions, load},
+    material::{
+        Bsdf, Conductor, Dielectric, Distribution, Lambert, Microfacet, Phong, Principled, RoughConductor,
+        RoughDielectric,
+    },
+    render::{Backend, Settings, render},
+    scene::Film,
     simd::{LANES, Real, Vector3, f32x8},
 };
 
@@ -41,7 +48,7 @@ fn points<R: Real>(count: usize) -> Vec<Points<R>> {
         .collect()
 }
 
-fn models<R: Real>() -> [(&'static str, Bsdf<R>); 4] {
+fn models<R: Real>() -> [(&'static str, Bsdf<'static, R>); 7] {
     let color = Vector3::splat(Vec3::new(0.7, 0.5, 0.3));
     [
         ("lambert", Bsdf::Lambert(Lambert { reflectance: color })),
@@ -51,6 +58,41 @@ fn models<R: Real>() -> [(&'static str, Bsdf<R>); 4] {
                 diffuse: color,
                 specular: color.scale(R::splat(0.3)),
                 exponent: R::splat(30.0),
+            }),
+        ),
+        (
+            "ggx",
+            Bsdf::RoughConductor(RoughConductor {
+                surface: Microfacet::new(Distribution::Ggx, R::splat(0.2), R::splat(0.3)),
+                eta: Vector3::splat(Vec3::new(0.2, 0.92, 1.1)),
+                k: Vector3::splat(Vec3::new(3.9, 2.45, 2.14)),
+                reflectance: color,
+            }),
+        ),
+        (
+            "beckmann glass",
+            Bsdf::RoughDielectric(RoughDielectric {
+                surface: Microfacet::new(Distribution::Beckmann, R::splat(0.2), R::splat(0.2)),
+                eta: R::splat(1.5),
+                reflectance: color,
+                transmittance: color,
+            }),
+        ),
+        (
+            "principled",
+            Bsdf::Principled(Principled {
+                base_color: color,
+                roughness: R::splat(0.4),
+                anisotropic: R::splat(0.3),
+                metallic: R::splat(0.2),
+                spec_trans: R::splat(0.1),
+                eta: R::splat(1.5),
+                spec_tint: R::splat(0.2),
+                sheen: R::splat(0.3),
+                sheen_tint: R::splat(0.5),
+                flatness: R::splat(0.2),
+                clearcoat: R::splat(0.5),
+                clearcoat_gloss: R::splat(0.7),
             }),
         ),
         (
@@ -69,7 +111,7 @@ fn models<R: Real>() -> [(&'static str, Bsdf<R>); 4] {
 }
 
 /// A number that everything went into.
-fn eval_and_sample<R: Real>(bsdf: &Bsdf<R>, points: &[Points<R>]) -> R {
+fn eval_and_sample<R: Real>(bsdf: &Bsdf<'_, R>, points: &[Points<R>]) -> R {
     points.iter().fold(R::zero(), |sum, p| {
         let sample = bsdf.sample(p.wo, p.lobe, p.u);
         let value = bsdf.eval(p.wo, p.wi) + sample.weight + sample.wi;
@@ -87,5 +129,30 @@ fn shading(c: &mut Criterion) {
     }
 }
 
-criterion_group!(all, shading);
+/// `scenes/materials.xml`: two dozen materials, sorted, as they come, and one at a time. An element is a
+/// sample of a pixel, tracing included.
+fn mixed(c: &mut Criterion) {
+    let Ok(loaded) = load("scenes/materials.xml".as_ref(), &LoadOptions::default()) else { return };
+    let mut description = loaded.description;
+    description.sensor.film = Film { width: 192, height: 128 };
+    description.sensor.sampler.sample_count = 4;
+    let Ok(scene) = compile(&description) else { return };
+    let mut group = c.benchmark_group("mixed");
+    group.throughput(Throughput::Elements(192 * 128 * 4));
+    group.sampling_mode(SamplingMode::Flat).sample_size(10);
+    for (name, backend, sort) in [
+        ("sorted", Backend::Packet, true),
+        ("unsorted", Backend::Packet, false),
+        ("scalar", Backend::Scalar, true),
+    ] {
+        let settings = Settings { backend, sort };
+        let lanes = render(&scene, &settings, &|_| {}).statistics.shade_lanes;
+        if backend == Backend::Packet {
+            println!("mixed, {name}: {:.1} % of the lanes of shading at work", 100.0 * lanes.ratio());
+        }
+        group.bench_function(name, |b| b.iter(|| render(&scene, &settings, &|_| {})));
+    }
+}
+
+criterion_group!(all, shading, mixed);
 criterion_main!(all);

@@ -28,8 +28,9 @@ use packlight::{
 /// instruction set only, is a broken contract, and no hash is to be taken from it.
 const FROZEN: &[(&str, u64)] = &[
     ("cornell", 0x32a0_1a69_46e9_97eb),
+    ("materials", 0x1bb6_f28c_6ae1_5414),
     ("mesh", 0xf9c1_a1dc_3503_9fbb),
-    ("spheres", 0x6034_b299_632d_84c6),
+    ("spheres", 0x21e4_89b2_3669_2b6b),
     ("whitted", 0xde1e_e07d_d10c_2ffd),
 ];
 
@@ -186,7 +187,24 @@ fn the_scenes_between_them_have_everything() {
     let read = |(_, path): &(String, PathBuf)| fs::read_to_string(path).expect("a scene can be read");
     let text: String = scenes().iter().map(read).collect();
     let shapes = ["sphere", "rectangle", "cube", "disk", "cylinder", "obj", "ply"];
-    let materials = ["diffuse", "conductor", "dielectric", "phong", "twosided"];
+    let materials = [
+        "diffuse",
+        "conductor",
+        "roughconductor",
+        "dielectric",
+        "roughdielectric",
+        "plastic",
+        "roughplastic",
+        "principled",
+        "phong",
+        "ward",
+        "toon",
+        "twosided",
+        "mask",
+        "blendbsdf",
+        "bumpmap",
+        "normalmap",
+    ];
     let others = ["bitmap", "checkerboard", "area", "point", "spot", "directional", "constant"];
     for kind in shapes.iter().chain(&materials).chain(&others) {
         assert!(text.contains(&format!(" type=\"{kind}\"")), "no scene has a `{kind}`");

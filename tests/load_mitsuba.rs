@@ -165,7 +165,10 @@ fn defaults_are_those_of_mitsuba() {
     assert_eq!(
         scene.materials[..3],
         [
-            Material::Conductor { eta: Rgb::ZERO, k: Rgb::ONE, specular_reflectance: constant(1.0) },
+            Material::Conductor {
+                metal: Metal { eta: constant(0.0), k: constant(1.0) },
+                specular_reflectance: constant(1.0),
+            },
             Material::Dielectric {
                 int_ior: 1.5046,
                 ext_ior: 1.000_277,
@@ -198,8 +201,9 @@ fn named_materials_have_their_constants() {
          <shape type='cube'><bsdf type='dielectric'><string name='int_ior' value='diamond'/>
            <float name='ext_ior' value='1'/></bsdf></shape>",
     );
-    let Material::Conductor { eta, k, .. } = scene.materials[0] else { panic!() };
-    assert_eq!((eta, k), (Rgb::new(0.2010, 0.9238, 1.1022), Rgb::new(3.9133, 2.4531, 2.1421)));
+    let Material::Conductor { metal, .. } = &scene.materials[0] else { panic!() };
+    let (eta, k) = (Rgb::new(0.2010, 0.9238, 1.1022), Rgb::new(3.9133, 2.4531, 2.1421));
+    assert_eq!(*metal, Metal { eta: Texture::Constant(eta), k: Texture::Constant(k) });
     let Material::Dielectric { int_ior, ext_ior, .. } = scene.materials[1] else { panic!() };
     assert_eq!((int_ior, ext_ior), (2.419, 1.0));
 }
@@ -322,8 +326,8 @@ fn elements_and_types_that_are_wrong_are_refused() {
             "3:14: the shape `instance` is not supported yet | supported shapes are ",
         ),
         (
-            "<bsdf type='roughconductor' id='x'/>",
-            "3:13: the bsdf `roughconductor` is not supported yet | supported bsdfs are `diffuse`, `conductor`, ",
+            "<bsdf type='thindielectric' id='x'/>",
+            "3:13: the bsdf `thindielectric` is not supported yet | supported bsdfs are `diffuse`, `conductor`, ",
         ),
         ("<emitter type='envmap'/>", "3:16: the emitter `envmap` is not supported yet | "),
         ("<shape kind='cube'/>", "3:2: `shape` needs the attribute `type` | "),

@@ -1,67 +1,227 @@
-//! Described materials to rows of the table.
+//! Described materials to rows of the table: trees of wrappers become lists of layers.
 
 use std::sync::Arc;
 
-use crate::material::{MaterialId, MaterialRow, MaterialTable, Model};
+use crate::material::{
+    Coat, Factor, Layer, MaterialId, MaterialRow, MaterialTable, MerlTable, Model, Step, Tables,
+    diffuse_reflectance,
+};
 use crate::picture::Picture;
-use crate::scene;
+use crate::scene::{self, Distribution, Material};
 use crate::texture::{Bitmap, Filter, Texture, TextureId, TextureTable, UvMap, Wrap};
 
 /// The table, its textures, and the id of each described material.
-pub(super) fn compile(materials: &[scene::Material]) -> (MaterialTable, TextureTable, Vec<MaterialId>) {
-    let mut textures = Textures { table: TextureTable::default(), seen: vec![] };
-    let rows: Vec<MaterialRow> = materials
-        .iter()
-        .map(|material| match material {
-            scene::Material::TwoSided { front, back } => MaterialRow {
-                front: textures.model(front),
-                back: Some(textures.model(back.as_deref().unwrap_or(front))),
-            },
-            one_sided => MaterialRow { front: textures.model(one_sided), back: None },
-        })
-        .collect();
-    let (table, ids) = MaterialTable::new(&rows);
-    (table, textures.table, ids)
+pub(super) fn compile(materials: &[Material]) -> (MaterialTable, TextureTable, Vec<MaterialId>) {
+    let mut compiler = Compiler::default();
+    let rows = materials.iter().map(|material| compiler.row(material)).collect();
+    let (table, ids) = {
+        let coats = compiler.coats.into_iter().map(|(_, coat)| coat).collect();
+        MaterialTable::new(rows, Tables { coats, measured: compiler.measured })
+    };
+    (table, compiler.textures, ids)
 }
 
-struct Textures {
-    table: TextureTable,
+#[derive(Default)]
+struct Compiler {
+    textures: TextureTable,
     /// Pictures that several materials share are stored once.
     seen: Vec<(scene::Texture, TextureId)>,
+    /// Coats by distribution, α and η.
+    coats: Vec<((Distribution, f32, f32), Coat)>,
+    measured: Vec<Arc<MerlTable>>,
 }
 
-impl Textures {
-    fn model(&mut self, material: &scene::Material) -> Model {
+/// How a layer has been reached.
+#[derive(Clone, Default)]
+struct Way {
+    factors: Vec<Factor>,
+    steps: Vec<Step>,
+}
+
+impl Way {
+    fn step(&self, step: Step) -> Self {
+        let mut way = self.clone();
+        way.steps.push(step);
+        way
+    }
+
+    fn times(&self, texture: TextureId, complement: bool) -> Self {
+        let mut way = self.clone();
+        way.factors.push(Factor { texture, complement });
+        way
+    }
+
+    /// Light that passes straight through doesn't see where the normal leans.
+    fn without_relief(mut self) -> Self {
+        self.steps.retain(|step| !matches!(step, Step::Bump { .. } | Step::Normal { .. }));
+        self
+    }
+}
+
+impl Compiler {
+    fn row(&mut self, material: &Material) -> MaterialRow {
+        let mut others = Vec::new();
+        self.layers(material, &Way::default(), &mut others);
+        // A tree has at least one leaf; what is seen first gives the row its kind.
+        let first = others.remove(0);
+        MaterialRow { first, others }
+    }
+
+    fn layers(&mut self, material: &Material, way: &Way, out: &mut Vec<Layer>) {
         match material {
-            scene::Material::Diffuse { reflectance } => Model::Lambert { reflectance: self.add(reflectance) },
-            scene::Material::Conductor { eta, k, specular_reflectance } => {
-                Model::Conductor { eta: *eta, k: *k, reflectance: self.add(specular_reflectance) }
+            Material::TwoSided { front, back: None } => self.layers(front, &way.step(Step::Turn), out),
+            Material::TwoSided { front, back: Some(back) } => {
+                self.layers(front, &way.step(Step::Front), out);
+                self.layers(back, &way.step(Step::Back), out);
             }
-            scene::Material::Dielectric {
+            Material::Mask { opacity, nested } => {
+                let opacity = self.add(opacity);
+                self.layers(nested, &way.times(opacity, false), out);
+                let Way { factors, steps } = way.times(opacity, true).without_relief();
+                out.push(Layer { model: Model::Transparent, factors, steps });
+            }
+            Material::Blend { weight, nested } => {
+                let weight = self.add(weight);
+                self.layers(&nested[0], &way.times(weight, true), out);
+                self.layers(&nested[1], &way.times(weight, false), out);
+            }
+            Material::BumpMap { height, scale, relief, nested } => {
+                let texture = self.add(height);
+                self.layers(nested, &way.step(Step::Bump { texture, scale: *scale, relief: *relief }), out);
+            }
+            Material::NormalMap { normals, relief, nested } => {
+                let texture = self.add(normals);
+                self.layers(nested, &way.step(Step::Normal { texture, relief: *relief }), out);
+            }
+            leaf => {
+                let Way { factors, steps } = way.clone();
+                out.push(Layer { model: self.model(leaf), factors, steps });
+            }
+        }
+    }
+
+    fn model(&mut self, material: &Material) -> Model {
+        match material {
+            Material::Diffuse { reflectance } => Model::Lambert { reflectance: self.add(reflectance) },
+            Material::Conductor { metal, specular_reflectance } => Model::Conductor {
+                eta: self.add(&metal.eta),
+                k: self.add(&metal.k),
+                reflectance: self.add(specular_reflectance),
+            },
+            Material::RoughConductor { roughness, metal, specular_reflectance } => Model::RoughConductor {
+                distribution: roughness.distribution,
+                alpha_u: self.add(&roughness.alpha_u),
+                alpha_v: self.add(&roughness.alpha_v),
+                eta: self.add(&metal.eta),
+                k: self.add(&metal.k),
+                reflectance: self.add(specular_reflectance),
+            },
+            Material::Dielectric { int_ior, ext_ior, specular_reflectance, specular_transmittance } => {
+                Model::Dielectric {
+                    eta: int_ior / ext_ior,
+                    reflectance: self.add(specular_reflectance),
+                    transmittance: self.add(specular_transmittance),
+                }
+            }
+            Material::RoughDielectric {
+                roughness,
                 int_ior,
                 ext_ior,
                 specular_reflectance,
                 specular_transmittance,
-            } => Model::Dielectric {
+            } => Model::RoughDielectric {
+                distribution: roughness.distribution,
+                alpha_u: self.add(&roughness.alpha_u),
+                alpha_v: self.add(&roughness.alpha_v),
                 eta: int_ior / ext_ior,
                 reflectance: self.add(specular_reflectance),
                 transmittance: self.add(specular_transmittance),
             },
-            scene::Material::Phong { diffuse_reflectance, specular_reflectance, exponent } => Model::Phong {
+            Material::Plastic {
+                roughness,
+                int_ior,
+                ext_ior,
+                diffuse_reflectance: diffuse,
+                specular_reflectance: specular,
+                nonlinear,
+            } => {
+                let (diffuse, specular) = (self.add(diffuse), self.add(specular));
+                self.plastic(*roughness, int_ior / ext_ior, (diffuse, specular), *nonlinear)
+            }
+            Material::Principled(p) => Model::Principled {
+                base_color: self.add(&p.base_color),
+                roughness: self.add(&p.roughness),
+                anisotropic: self.add(&p.anisotropic),
+                metallic: self.add(&p.metallic),
+                spec_trans: self.add(&p.spec_trans),
+                eta: p.eta,
+                spec_tint: self.add(&p.spec_tint),
+                sheen: self.add(&p.sheen),
+                sheen_tint: self.add(&p.sheen_tint),
+                flatness: self.add(&p.flatness),
+                clearcoat: self.add(&p.clearcoat),
+                clearcoat_gloss: self.add(&p.clearcoat_gloss),
+            },
+            Material::Measured { table } => {
+                let same = |known: &Arc<MerlTable>| Arc::ptr_eq(known, table);
+                let place = self.measured.iter().position(same).unwrap_or_else(|| {
+                    self.measured.push(Arc::clone(table));
+                    self.measured.len() - 1
+                });
+                Model::Measured { table: place as u32 }
+            }
+            Material::Phong { diffuse_reflectance, specular_reflectance, exponent } => Model::Phong {
                 diffuse: self.add(diffuse_reflectance),
                 specular: self.add(specular_reflectance),
                 exponent: *exponent,
             },
-            // The description says that sides are not nested; if they are, the front is what is seen.
-            scene::Material::TwoSided { front, .. } => self.model(front),
+            Material::Ward { diffuse_reflectance, specular_reflectance, alpha_u, alpha_v } => Model::Ward {
+                diffuse: self.add(diffuse_reflectance),
+                specular: self.add(specular_reflectance),
+                alpha_u: self.add(alpha_u),
+                alpha_v: self.add(alpha_v),
+            },
+            Material::Toon { reflectance, bands } => {
+                Model::Toon { reflectance: self.add(reflectance), bands: *bands }
+            }
+            // Wrappers have been opened by `layers`.
+            Material::TwoSided { .. }
+            | Material::Mask { .. }
+            | Material::Blend { .. }
+            | Material::BumpMap { .. }
+            | Material::NormalMap { .. } => Model::Transparent,
         }
+    }
+
+    fn plastic(
+        &mut self,
+        roughness: Option<(Distribution, f32)>,
+        eta: f32,
+        (diffuse, specular): (TextureId, TextureId),
+        nonlinear: bool,
+    ) -> Model {
+        let Some((distribution, alpha)) = roughness else {
+            return Model::Plastic {
+                diffuse,
+                specular,
+                eta,
+                internal: diffuse_reflectance(1.0 / eta),
+                nonlinear,
+            };
+        };
+        let key = (distribution, alpha, eta);
+        let place = self.coats.iter().position(|(known, _)| *known == key).unwrap_or_else(|| {
+            self.coats.push((key, Coat::new(distribution, alpha, eta)));
+            self.coats.len() - 1
+        });
+        Model::RoughPlastic { distribution, alpha, coat: place as u32, eta, diffuse, specular, nonlinear }
     }
 
     fn add(&mut self, texture: &scene::Texture) -> TextureId {
         if let Some((_, id)) = self.seen.iter().find(|(seen, _)| same(seen, texture)) {
             return *id;
         }
-        let id = self.table.add(match texture {
+        let id = self.textures.add(match texture {
             scene::Texture::Constant(color) => Texture::Constant(*color),
             scene::Texture::Checkerboard { color0, color1, to_uv } => {
                 Texture::Checkerboard { colors: [*color0, *color1], map: UvMap::new(*to_uv) }

@@ -75,14 +75,16 @@ impl Scene {
         self.surfaces.shape(primitive.0).material
     }
 
-    /// The points where rays (org, dir) met their primitives at (t, u, v).
+    /// The points where rays (org, dir) met their primitives at (t, u, v); `oriented` asks for the
+    /// directions of u and v.
     #[inline]
     pub fn surface<R: Real>(
         &self,
         ray: (Vector3<R>, Vector3<R>),
         tuv: (R, R, R),
         primitive: R::Bits,
+        oriented: bool,
     ) -> Surface<R> {
-        self.surfaces.at(ray, tuv, primitive)
+        self.surfaces.at(ray, tuv, primitive, oriented)
     }
 }

@@ -8,6 +8,8 @@ use crate::material::MaterialId;
 use crate::math::{Frame, INV_PI, INV_TWO_PI, acos, atan2};
 use crate::simd::{Bits, Mask, Real, Vector3, vector3};
 
+mod partials;
+
 /// A vertex in world space: 32 bytes.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
@@ -86,8 +88,10 @@ pub struct Surface<R: Real> {
     pub extent: Vector3<R>,
     /// Geometric normal as the surface stores it, unit length.
     pub n_g: Vector3<R>,
-    /// The shading normal, with tangents.
+    /// The shading normal, with tangents: the first along ∂p/∂u where that was asked for, else any.
     pub frame: Frame<R>,
+    /// ∂p/∂u and ∂p/∂v in world space where they were asked for, else zero.
+    pub partials: [Vector3<R>; 2],
     /// Texture coordinates.
     pub uv: (R, R),
     /// [`LightId`] of the shape.
@@ -110,13 +114,14 @@ impl Surfaces {
     }
 
     /// The points where rays with direction `dir` from `org` met `primitive` at (t, u, v). Every lane
-    /// must name a primitive.
+    /// must name a primitive. `oriented` asks for what has to do with the direction of u and v.
     #[inline]
     pub(super) fn at<R: Real>(
         &self,
         (org, dir): (Vector3<R>, Vector3<R>),
         (t, u, v): (R, R, R),
         primitive: R::Bits,
+        oriented: bool,
     ) -> Surface<R> {
         let rows: [&ShapeRow; 8] =
             std::array::from_fn(|i| self.shape(primitive.lane(if i < R::LANES { i } else { 0 })));
@@ -166,11 +171,21 @@ impl Surfaces {
         }
         let side = R::from_fn(|i| rows[i].side);
         let (n_g, n_s) = (part.n_g.scale(side), part.n_s.scale(side));
+        let (mut frame, mut moves) = (Frame::around(n_s), [Vector3::zero(); 2]);
+        if oriented {
+            let mut lanes = [[Vec3::ZERO; 2]; 8];
+            for (i, lane) in lanes[..R::LANES].iter_mut().enumerate() {
+                *lane = self.partials(primitive.lane(i), part.position.lane(i), part.n_g.lane(i));
+            }
+            moves = [0, 1].map(|k| Vector3::from_fn(|i| lanes[i][k]));
+            frame = partials::frame_along(n_s, moves[0]);
+        }
         Surface {
             position: part.position,
             extent: part.extent,
             n_g,
-            frame: Frame::around(n_s),
+            frame,
+            partials: moves,
             uv: part.uv,
             light: R::Bits::from_fn(|i| rows[i].light.0),
         }

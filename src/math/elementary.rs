@@ -97,6 +97,18 @@ pub fn log2<R: Real>(x: R) -> R {
     exponent + ln * R::splat(std::f32::consts::LOG2_E)
 }
 
+/// eˣ, relative error below 2⁻²¹ (1 + |x|); `x` is clamped to [-87, 88].
+#[inline]
+pub fn exp<R: Real>(x: R) -> R {
+    exp2(x * R::splat(std::f32::consts::LOG2_E))
+}
+
+/// The natural logarithm of a positive normal x; −87 or less for 0 and subnormals.
+#[inline]
+pub fn ln<R: Real>(x: R) -> R {
+    log2(x) * R::splat(std::f32::consts::LN_2)
+}
+
 /// xʸ for x ≥ 0: 1 where y = 0, else 0 where x = 0.
 #[inline]
 pub fn pow<R: Real>(x: R, y: R) -> R {
@@ -162,9 +174,11 @@ mod tests {
         }
         for x in sweep(-20.0, 20.0) {
             check(exp2, exp2, f64::exp2, x, 5e-7);
+            check(exp, exp, f64::exp, x, 5e-7 * f64::from(1.0 + x.abs()));
         }
         for x in sweep(1e-6, 50.0) {
             check(log2, log2, f64::log2, x, 3e-7);
+            check(ln, ln, f64::ln, x, 3e-7);
             check(|x| pow(x, 2.5), |x| pow(x, f32x8::splat(2.5)), |x| x.powf(2.5), x, 2e-6);
         }
     }

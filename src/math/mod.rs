@@ -5,11 +5,13 @@
 //! the platform's libm nor a fused multiply-add can change a bit.
 
 mod elementary;
+mod erf;
 mod frame;
 mod sampler;
 pub mod warp;
 
-pub use elementary::{acos, atan2, exp2, log2, pow, sin_cos_turns};
+pub use elementary::{acos, atan2, exp, exp2, ln, log2, pow, sin_cos_turns};
+pub use erf::{erf, erf_inv};
 pub use frame::Frame;
 pub use sampler::{PathKey, Sampler};
 

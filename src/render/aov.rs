@@ -31,7 +31,7 @@ impl Integrator for AovIntegrator {
 
     fn miss<R: Real>(&self, _: &Scene, _: &Path<R>, _: Vector3<R>, _: &mut impl Outgoing<R>) {}
 
-    fn shade<R: Real>(&self, _: &Scene, vertex: &Vertex<R>, out: &mut impl Outgoing<R>) {
+    fn shade<R: Real>(&self, _: &Scene, vertex: &Vertex<'_, R>, out: &mut impl Outgoing<R>) {
         let surface = &vertex.surface;
         let mut channel = 0;
         let mut put = |values: &[R]| {

@@ -87,5 +87,5 @@ pub(super) trait Integrator: Sync {
     fn miss<R: Real>(&self, scene: &Scene, path: &Path<R>, dir: Vector3<R>, out: &mut impl Outgoing<R>);
 
     /// Rays that have hit something.
-    fn shade<R: Real>(&self, scene: &Scene, vertex: &Vertex<R>, out: &mut impl Outgoing<R>);
+    fn shade<R: Real>(&self, scene: &Scene, vertex: &Vertex<'_, R>, out: &mut impl Outgoing<R>);
 }

@@ -35,7 +35,7 @@ impl Integrator for PathTracer {
         }
     }
 
-    fn shade<R: Real>(&self, scene: &Scene, vertex: &Vertex<R>, out: &mut impl Outgoing<R>) {
+    fn shade<R: Real>(&self, scene: &Scene, vertex: &Vertex<'_, R>, out: &mut impl Outgoing<R>) {
         let path = &vertex.path;
         if path.depth > 0 || !self.hide_emitters {
             add_rgb(out, vertex.emitted(scene, pick(scene)));

@@ -112,7 +112,7 @@ fn arrive(scene: &Scene, rays: &[Ray32], keys: &[u32]) -> Vec<Point> {
         .map(|((ray, hit), &key)| {
             let ray = ray.ray();
             let (org, dir) = (Vector3::from(ray.org), Vector3::from(ray.dir));
-            let surface = scene.surface((org, dir), (hit.t, hit.u, hit.v), hit.primitive.0);
+            let surface = scene.surface((org, dir), (hit.t, hit.u, hit.v), hit.primitive.0, false);
             let n = if surface.n_g.dot(dir) > 0.0 { -surface.n_g } else { surface.n_g };
             Point { position: surface.position, extent: surface.extent, n, key }
         })

@@ -4,25 +4,21 @@ use super::integrator::Path;
 use crate::compile::{Scene, Surface};
 use crate::geometry::{REACH, offset_origin};
 use crate::light::{Light, LightId, SurfacePoint, power_heuristic};
-use crate::material::{Branch, Bsdf, MaterialId, Sample};
-use crate::simd::{Bits, Mask, Real, Vector3, vector3};
+use crate::material::{Appearance, MaterialId, Point};
+use crate::simd::{Bits, Mask, Real, Vector3};
 
 /// Points where paths have arrived, all of one material.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Vertex<R: Real> {
+#[derive(Clone, Debug)]
+pub(super) struct Vertex<'s, R: Real> {
     pub(super) path: Path<R>,
     /// Origin of the ray that arrived.
     pub(super) from: Vector3<R>,
     /// Its parameter.
     pub(super) t: R,
     pub(super) surface: Surface<R>,
-    /// Towards the viewer, shading frame.
-    wo: Vector3<R>,
-    front: Bsdf<R>,
-    /// A second model for the other side.
-    back: Option<Bsdf<R>>,
-    /// −1 where a two-sided material is seen from behind: z is turned round in the shading frame.
-    side: R,
+    /// cos θ_o as the surface stores its normal.
+    cos_o: R,
+    appearance: Appearance<'s, R>,
 }
 
 /// A path that goes on: in which lanes, along which ray (org, dir), and what it is worth.
@@ -37,67 +33,33 @@ pub(super) struct Connection<R: Real> {
     pub(super) radiance: Vector3<R>,
 }
 
-impl<R: Real> Vertex<R> {
+impl<'s, R: Real> Vertex<'s, R> {
     /// The vertices where rays (org, dir) met `primitive` at (t, u, v).
     #[inline]
     pub(super) fn new(
-        scene: &Scene,
+        scene: &'s Scene,
         path: Path<R>,
         (org, dir): (Vector3<R>, Vector3<R>),
         (t, u, v): (R, R, R),
         primitive: R::Bits,
         material: MaterialId,
     ) -> Self {
-        let surface = scene.surface((org, dir), (t, u, v), primitive);
-        let row = scene.materials.row(material);
+        let oriented = scene.materials.is_oriented(material);
+        let surface = scene.surface((org, dir), (t, u, v), primitive, oriented);
         let wo = surface.frame.to_local(-dir);
-        let front = row.front.fetch(&scene.textures, surface.uv);
-        let (back, side) = match &row.back {
-            None => (None, R::one()),
-            Some(back) => {
-                let other = (*back != row.front).then(|| back.fetch(&scene.textures, surface.uv));
-                (other, R::select(wo.z.lt(R::zero()), -R::one(), R::one()))
-            }
+        let tangents = match oriented {
+            true => surface.partials.map(|partial| surface.frame.to_local(partial)),
+            false => surface.partials,
         };
-        let wo = vector3(wo.x, wo.y, wo.z * side);
-        Self { path, from: org, t, surface, wo, front, back, side }
-    }
-
-    /// Does the material reflect anything but delta lobes?
-    #[inline]
-    fn is_smooth(&self) -> bool {
-        self.front.is_smooth() || self.back.is_some_and(|back| back.is_smooth())
-    }
-
-    #[inline]
-    fn local(&self, w: Vector3<R>) -> Vector3<R> {
-        let w = self.surface.frame.to_local(w);
-        vector3(w.x, w.y, w.z * self.side)
-    }
-
-    #[inline]
-    fn world(&self, w: Vector3<R>) -> Vector3<R> {
-        self.surface.frame.to_world(vector3(w.x, w.y, w.z * self.side))
-    }
-
-    /// `front` and `back` of a function of the model, each on its side.
-    #[inline]
-    fn by_side<T>(&self, f: impl Fn(&Bsdf<R>) -> T, select: impl Fn(R::Mask, T, T) -> T) -> T {
-        let front = f(&self.front);
-        match &self.back {
-            None => front,
-            Some(back) => select(self.side.lt(R::zero()), f(back), front),
-        }
+        let point = Point { wo, uv: surface.uv, tangents };
+        let appearance = scene.materials.appearance(material, &scene.textures, &point);
+        Self { path, from: org, t, surface, cos_o: wo.z, appearance }
     }
 
     /// f |cos θ_i| for a world direction, and the density with which it is sampled.
     #[inline]
     fn eval(&self, wi: Vector3<R>) -> (Vector3<R>, R) {
-        let wi = self.local(wi);
-        self.by_side(
-            |bsdf| (bsdf.eval(self.wo, wi), bsdf.pdf(self.wo, wi)),
-            |mask, a, b| (Vector3::select(mask, a.0, b.0), R::select(mask, a.1, b.1)),
-        )
+        self.appearance.eval(self.surface.frame.to_local(wi))
     }
 
     /// The ray from the surface along a world direction.
@@ -110,17 +72,7 @@ impl<R: Real> Vertex<R> {
     /// A BSDF sample as the ray that goes on: (lanes, ray, path).
     #[inline]
     pub(super) fn scatter(&self, lobe: R, u: (R, R)) -> Continuation<R> {
-        let sample = self.by_side(
-            |bsdf| bsdf.sample(self.wo, lobe, u),
-            |mask, a, b| Sample {
-                wi: Vector3::select(mask, a.wi, b.wi),
-                weight: Vector3::select(mask, a.weight, b.weight),
-                pdf: R::select(mask, a.pdf, b.pdf),
-                eta: R::select(mask, a.eta, b.eta),
-                delta: (mask & a.delta) | (!mask & b.delta),
-                valid: (mask & a.valid) | (!mask & b.valid),
-            },
-        );
+        let sample = self.appearance.sample(lobe, u);
         let beta = self.path.beta * sample.weight;
         let path = Path {
             beta,
@@ -130,27 +82,17 @@ impl<R: Real> Vertex<R> {
             ..self.path
         };
         let lanes = sample.valid & beta.max_element().gt(R::zero());
-        (lanes, self.leave(self.world(sample.wi)), path)
+        (lanes, self.leave(self.surface.frame.to_world(sample.wi)), path)
     }
 
     /// The delta lobes as rays that go on: reflection, refraction.
     #[inline]
     pub(super) fn branches(&self) -> [Continuation<R>; 2] {
-        let branches = self.by_side(
-            |bsdf| bsdf.branches(self.wo),
-            |mask, a, b| {
-                std::array::from_fn(|i| Branch {
-                    wi: Vector3::select(mask, a[i].wi, b[i].wi),
-                    weight: Vector3::select(mask, a[i].weight, b[i].weight),
-                    valid: (mask & a[i].valid) | (!mask & b[i].valid),
-                })
-            },
-        );
-        branches.map(|branch| {
+        self.appearance.branches().map(|branch| {
             let beta = self.path.beta * branch.weight;
             let lanes = branch.valid & beta.max_element().gt(R::zero());
             let path = Path { beta, depth: self.path.depth + 1, ..self.path };
-            (lanes, self.leave(self.world(branch.wi)), path)
+            (lanes, self.leave(self.surface.frame.to_world(branch.wi)), path)
         })
     }
 
@@ -163,8 +105,7 @@ impl<R: Real> Vertex<R> {
             let Some(Light::Area(area)) = scene.lights.get(light as usize) else {
                 continue;
             };
-            // `wo` has been turned to the side seen; the emitting side is the surface's own.
-            let lanes = lanes & (self.wo.z * self.side).gt(R::zero());
+            let lanes = lanes & self.cos_o.gt(R::zero());
             let point = SurfacePoint { position: self.surface.position, n_g: self.surface.n_g };
             let light_pdf = area.pdf(self.from, &point) * R::splat(pick);
             let weight = mis_weight(self.path.pdf, light_pdf);
@@ -209,7 +150,7 @@ impl<R: Real> Vertex<R> {
         random: impl Fn(u32) -> (R, R),
         mut shadow: impl FnMut(usize, Connection<R>),
     ) {
-        if !self.is_smooth() {
+        if !self.appearance.is_smooth() {
             return;
         }
         for (index, light) in scene.lights.iter().enumerate() {
@@ -221,7 +162,7 @@ impl<R: Real> Vertex<R> {
     #[inline]
     pub(super) fn connect_one(&self, scene: &Scene, (u, v): (R, R)) -> Option<Connection<R>> {
         let count = scene.lights.len();
-        if count == 0 || !self.is_smooth() {
+        if count == 0 || !self.appearance.is_smooth() {
             return None;
         }
         let scaled = u * R::splat(count as f32);

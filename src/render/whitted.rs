@@ -25,7 +25,7 @@ impl Integrator for Whitted {
         add_rgb(out, environment(scene, path, 1.0));
     }
 
-    fn shade<R: Real>(&self, scene: &Scene, vertex: &Vertex<R>, out: &mut impl Outgoing<R>) {
+    fn shade<R: Real>(&self, scene: &Scene, vertex: &Vertex<'_, R>, out: &mut impl Outgoing<R>) {
         let path = &vertex.path;
         add_rgb(out, vertex.emitted(scene, 1.0));
         if path.depth + 1 >= self.max_depth {

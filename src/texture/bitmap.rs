@@ -58,6 +58,21 @@ impl Bitmap {
         }
     }
 
+    /// How fast the bilinear colour changes with u and with v.
+    #[inline]
+    pub fn gradient<R: Real>(&self, (u, v): (R, R)) -> [Vector3<R>; 2] {
+        let (width, height) = (R::splat(self.width as f32), R::splat(self.height as f32));
+        let (x, y) = (u * width - R::splat(0.5), v * height - R::splat(0.5));
+        let (left, top) = (x.floor(), y.floor());
+        let (right, bottom) = (left + R::one(), top + R::one());
+        let (fx, fy) = (x - left, y - top);
+        let corners = [(left, top), (right, top), (left, bottom), (right, bottom)];
+        let [c00, c10, c01, c11] = corners.map(|(x, y)| self.gather(x, y));
+        let along_x = (c10 - c00).scale(R::one() - fy) + (c11 - c01).scale(fy);
+        let along_y = (c01 - c00).scale(R::one() - fx) + (c11 - c10).scale(fx);
+        [along_x.scale(width), along_y.scale(height)]
+    }
+
     #[inline]
     fn gather<R: Real>(&self, x: R, y: R) -> Vector3<R> {
         let mut lanes = [[0.0; 3]; 8];

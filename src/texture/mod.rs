@@ -32,6 +32,13 @@ impl UvMap {
         let row = |[a, b, c]: [f32; 3]| R::splat(a) * u + R::splat(b) * v + R::splat(c);
         (row(self.rows[0]), row(self.rows[1]))
     }
+
+    /// The gradient in (u, v) of a function whose gradient at the image is (x, y).
+    #[inline]
+    fn pull_back<R: Real>(&self, (x, y): (R, R)) -> (R, R) {
+        let [[a, b, _], [c, d, _]] = self.rows.map(|row| row.map(R::splat));
+        (a * x + c * y, b * x + d * y)
+    }
 }
 
 /// A texture ready to be evaluated; the meaning is that of the scene's description.
@@ -90,12 +97,75 @@ impl TextureTable {
             Texture::Bitmap { bitmap, map } => bitmap.fetch(map.apply(uv)),
         }
     }
+
+    /// A texture as a number: its luminance. Constants are grey, and taken as they are.
+    #[inline]
+    pub fn fetch_number<R: Real>(&self, id: TextureId, uv: (R, R)) -> R {
+        match &self.textures[id.0 as usize] {
+            Texture::Constant(color) => R::splat(color.x),
+            _ => luminance(self.fetch(id, uv)),
+        }
+    }
+
+    /// How fast the number changes with u and with v: 0 but for a bilinear bitmap.
+    #[inline]
+    pub fn gradient<R: Real>(&self, id: TextureId, uv: (R, R)) -> (R, R) {
+        match &self.textures[id.0 as usize] {
+            Texture::Bitmap { bitmap, map } if bitmap.filter == Filter::Bilinear => {
+                let [along_u, along_v] = bitmap.gradient(map.apply(uv));
+                map.pull_back((luminance(along_u), luminance(along_v)))
+            }
+            _ => (R::zero(), R::zero()),
+        }
+    }
+}
+
+/// Y of a linear sRGB colour.
+#[inline]
+fn luminance<R: Real>(c: Vector3<R>) -> R {
+    R::splat(0.212_671) * c.x + R::splat(0.715_16) * c.y + R::splat(0.072_169) * c.z
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::simd::f32x8;
+
+    fn ramp() -> (TextureTable, TextureId) {
+        let mut table = TextureTable::default();
+        let texels = (0..16).map(|i| [(i % 4) as f32 * 0.25 + (i / 4) as f32 * 0.0625; 3]).collect();
+        let bitmap = Bitmap { texels, width: 4, height: 4, filter: Filter::Bilinear, wrap: Wrap::Clamp };
+        let map = UvMap::new(DAffine2::from_scale(glam::dvec2(2.0, 1.0)));
+        let id = table.add(Texture::Bitmap { bitmap, map });
+        (table, id)
+    }
+
+    #[test]
+    fn gradients_are_differences() {
+        let (table, id) = ramp();
+        let (u, v) = (0.21, 0.43);
+        let (along_u, along_v) = table.gradient::<f32>(id, (u, v));
+        // 0.25 a texel, four texels a unit, twice as fast by the map.
+        assert!((along_u - 2.0).abs() < 1e-5 && (along_v - 0.25).abs() < 1e-5, "{along_u} {along_v}");
+        let step = 0.01;
+        let at = |u, v| table.fetch_number::<f32>(id, (u, v));
+        assert!(((at(u + step, v) - at(u, v)) / step - along_u).abs() < 1e-3);
+        assert!(((at(u, v + step) - at(u, v)) / step - along_v).abs() < 1e-3);
+        let lanes = table.gradient(id, (f32x8::splat(u), f32x8::splat(v)));
+        assert_eq!((lanes.0.lane(3), lanes.1.lane(7)), (along_u, along_v));
+        let flat = TextureTable { textures: vec![Texture::Constant(Vec3::ONE)] };
+        assert_eq!(flat.gradient::<f32>(TextureId(0), (u, v)), (0.0, 0.0));
+    }
+
+    #[test]
+    fn numbers_are_luminances() {
+        let (table, id) = ramp();
+        let grey = table.fetch::<f32>(id, (0.2, 0.6)).x;
+        assert!((table.fetch_number::<f32>(id, (0.2, 0.6)) - grey).abs() < 1e-6);
+        let mut table = TextureTable::default();
+        let id = table.add(Texture::Constant(Vec3::splat(0.1)));
+        assert_eq!(table.fetch_number::<f32>(id, (0.0, 0.0)), 0.1);
+    }
 
     #[test]
     fn checkerboard_has_two_fields_a_unit_and_color0_at_the_origin() {

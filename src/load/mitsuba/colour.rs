@@ -28,6 +28,23 @@ pub(super) fn coefficient(object: Object, name: &'static str, default: f32) -> R
     not_negative(object, name, rgb)
 }
 
+/// A number in [0, 1].
+pub(super) fn unit(object: Object, name: &'static str, default: f64) -> Result<f64, LoadError> {
+    let number = match object.value(name) {
+        None => default,
+        Some(&Value::Spectrum(grey) | &Value::Float(grey)) => grey,
+        Some(&Value::Integer(grey)) => grey as f64,
+        Some(&Value::Rgb([r, g, b])) if r == g && g == b => r,
+        Some(_) => return Err(object.wrong_kind(name, "`float` or `texture`")),
+    };
+    match (0.0..=1.0).contains(&number) {
+        true => Ok(number),
+        false => Err(object
+            .error_at(name, format!("`{name}` must lie between 0 and 1, but is {number}"))
+            .label("out of range")),
+    }
+}
+
 /// Radiance, intensity or irradiance; 1 if it is absent.
 pub(super) fn emission(object: Object, name: &'static str) -> Result<Rgb, LoadError> {
     let rgb = match object.value(name) {

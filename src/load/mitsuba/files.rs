@@ -2,6 +2,7 @@
 
 use std::{
     collections::HashMap,
+    fs,
     path::{Path, PathBuf},
     sync::Arc,
 };
@@ -10,7 +11,7 @@ use super::properties::Object;
 use crate::{
     load::{LoadError, Warning, obj, ply},
     picture::{self, Encoding, Picture},
-    scene::Mesh,
+    scene::{MerlTable, Mesh},
 };
 
 /// What has been read so far.
@@ -20,6 +21,7 @@ pub(super) struct Files {
     meshes: HashMap<(PathBuf, bool), Arc<Mesh>>,
     /// By path and whether the numbers are raw.
     pictures: HashMap<(PathBuf, bool), Arc<Picture>>,
+    tables: HashMap<PathBuf, Arc<MerlTable>>,
     pub(super) warnings: Vec<Warning>,
 }
 
@@ -43,6 +45,19 @@ impl Files {
         let mesh = Arc::new(mesh);
         self.meshes.insert(key, Arc::clone(&mesh));
         Ok(mesh)
+    }
+
+    /// The measured table that the `filename` of a `merl` names.
+    pub(super) fn table(&mut self, bsdf: Object) -> Result<Arc<MerlTable>, LoadError> {
+        let path = existing_file(bsdf)?;
+        if let Some(table) = self.tables.get(&path) {
+            return Ok(Arc::clone(table));
+        }
+        let refusal = |why: String| bsdf.error_at("filename", format!("the table can't be used: {why}"));
+        let bytes = fs::read(&path).map_err(|error| refusal(error.to_string()))?;
+        let table = Arc::new(MerlTable::decode(&bytes).map_err(|error| refusal(error.to_string()))?);
+        self.tables.insert(path, Arc::clone(&table));
+        Ok(table)
     }
 
     /// The picture that the `filename` of a `bitmap` names.

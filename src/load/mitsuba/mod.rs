@@ -110,7 +110,7 @@ impl Builder {
             bsdf::build(bsdf, &mut self.files)?;
         }
         for &texture in &textures {
-            texture::build(texture, &mut self.files)?;
+            texture::build(texture, texture::Range::Coefficient, &mut self.files)?;
         }
         for object in bsdfs.iter().chain(&textures).filter(|object| !object.is_referenced()) {
             let name = object.id().map_or("without an id".into(), |id| format!("`{id}`"));

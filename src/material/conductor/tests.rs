@@ -3,7 +3,7 @@ use glam::Vec3;
 use super::*;
 use crate::material::{Bsdf, proof};
 
-fn gold<R: Real>() -> Bsdf<R> {
+fn gold<R: Real>() -> Bsdf<'static, R> {
     Bsdf::Conductor(Conductor {
         eta: Vector3::splat(Vec3::new(0.143, 0.375, 1.442)),
         k: Vector3::splat(Vec3::new(3.983, 2.386, 1.603)),

@@ -3,7 +3,7 @@ use glam::Vec3;
 use super::*;
 use crate::material::{Bsdf, proof};
 
-fn glass<R: Real>(eta: f32) -> Bsdf<R> {
+fn glass<R: Real>(eta: f32) -> Bsdf<'static, R> {
     let one = Vector3::splat(Vec3::ONE);
     Bsdf::Dielectric(Dielectric { eta: R::splat(eta), reflectance: one, transmittance: one })
 }

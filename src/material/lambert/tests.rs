@@ -5,7 +5,7 @@ use crate::material::{Bsdf, proof};
 
 const RHO: Vec3 = Vec3::new(0.25, 0.5, 1.0);
 
-fn lambert<R: Real>() -> Bsdf<R> {
+fn lambert<R: Real>() -> Bsdf<'static, R> {
     Bsdf::Lambert(Lambert { reflectance: Vector3::splat(RHO) })
 }
 

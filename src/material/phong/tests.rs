@@ -6,7 +6,7 @@ use crate::material::{Bsdf, proof};
 const DIFFUSE: Vec3 = Vec3::new(0.5, 0.2, 0.0);
 const SPECULAR: Vec3 = Vec3::new(0.5, 0.3, 1.0);
 
-fn phong<R: Real>(diffuse: Vec3, specular: Vec3, exponent: f32) -> Bsdf<R> {
+fn phong<R: Real>(diffuse: Vec3, specular: Vec3, exponent: f32) -> Bsdf<'static, R> {
     Bsdf::Phong(Phong {
         diffuse: Vector3::splat(diffuse),
         specular: Vector3::splat(specular),
