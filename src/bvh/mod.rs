@@ -4,40 +4,25 @@
 //! class into *slots*, eight to a block, and it hands ranges of slots to whoever knows what is in them
 //! ([`Leaves`]).
 //!
-//! Build, by one of three qualities ([`Quality`]): a binary tree, by binned SAH \[Wal07\] (`build`, and
-//! `sweep` near the leaves) or along the Morton curve \[LGS09\] (`morton`), optimised by reinsertion
-//! \[MB18\] (`reinsert`); then collapsed to eight children by dynamic programming \[YKL17\] (`weigh`
-//! decides, `collapse` lays out). Traversal: tiles of sixty-four rays, packets of eight, sixteen single rays
-//! in turn, or one ray alone, the reference for the others; closest hit and occlusion from one body each.
+//! `build` makes it, by one of three qualities ([`Quality`]). Traversal: tiles of sixty-four rays, packets of
+//! eight, sixteen single rays in turn, or one ray alone, the reference for the others; closest hit and
+//! occlusion from one body each.
 
 mod beam;
-mod binary;
-mod bins;
 mod build;
-mod collapse;
 mod cost;
 mod entry;
-mod links;
-mod morton;
 mod node;
 mod packet;
-mod partition;
-mod quality;
-mod reference;
-mod reinsert;
 mod run;
 mod single;
 mod stream;
-mod sweep;
 mod tile;
 mod validate;
 mod wave;
-mod weigh;
 
-pub use build::MAX_LEAF;
+pub use build::{MAX_LEAF, Quality, Reference};
 pub use node::{Child, Kind, Node};
-pub use quality::Quality;
-pub use reference::Reference;
 pub use stream::{Stream, Tracer, Way};
 pub use validate::{Defect, Shape};
 use wave::Wave;

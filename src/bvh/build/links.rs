@@ -2,7 +2,7 @@
 
 use super::{
     binary::{self, Binary, Packed},
-    build,
+    binned,
     reference::{Bounds, Reference},
 };
 use crate::geometry::Aabb;
@@ -152,9 +152,9 @@ impl Links {
                 packed[0] = Binary::leaf(self.bounds(node), first as u32, count as usize).pack();
                 1
             }
-            Below::Pair(_) if depth >= build::SAH_DEPTH => {
+            Below::Pair(_) if depth >= binned::SAH_DEPTH => {
                 self.gather(node, from, ordered);
-                build::halves(&mut ordered[first..], first as u32, packed)
+                binned::halves(&mut ordered[first..], first as u32, packed)
             }
             Below::Pair(pair) => {
                 let right = 1 + self.lay_out_below(pair, depth + 1, from, &mut packed[1..], ordered);

@@ -1,13 +1,14 @@
 //! How much work goes into a tree.
 
 use super::{
-    Bvh, Reference,
+    Reference,
     binary::Binary,
-    build,
+    binned,
     collapse::{Weighed, collapse},
     morton, reinsert,
     weigh::Choices,
 };
+use crate::bvh::Bvh;
 use crate::geometry::Aabb;
 
 /// How much work goes into a tree. Hits are the same to the bit; what differs is the time to build the
@@ -34,9 +35,9 @@ impl Bvh {
         }
         let binary = match quality {
             Quality::Fast => morton::build(&mut references),
-            Quality::Medium => build::build(&mut references),
+            Quality::Medium => binned::build(&mut references),
             Quality::High => {
-                let binary = build::build(&mut references);
+                let binary = binned::build(&mut references);
                 reinsert::reinsert(binary, &mut references)
             }
         };

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::{
     binary::{self, Binary, Packed},
-    build::{self, PARALLEL},
+    binned::{self, PARALLEL},
     reference::{Bounds, Reference},
     sweep::{self, SMALL},
 };
@@ -21,7 +21,7 @@ const NUMBER: u32 = 64 - 3 * BITS;
 
 /// Builds the tree and puts the references into leaf order. Not for an empty slice.
 pub(super) fn build(references: &mut Vec<Reference>) -> Vec<Packed> {
-    let [_, centres] = build::extents(references);
+    let [_, centres] = binned::extents(references);
     let size = (centres.max() - centres.min()).max(Vec3A::splat(f32::MIN_POSITIVE));
     // Below 1 whatever the rounding; divided, as the reciprocal of a small size overflows.
     let cell = |reference: &Reference| {

@@ -11,7 +11,7 @@ use crate::simd::{Mask, Real, f32x8};
 pub struct Reference {
     /// Its box; no coordinate beyond half of the greatest float.
     pub bounds: Aabb,
-    /// Its number, handed back in [`Bvh::slots`](super::Bvh::slots).
+    /// Its number, handed back in [`Bvh::slots`](crate::bvh::Bvh::slots).
     pub index: u32,
     /// Leaves hold references of one class.
     pub class: u8,

@@ -8,12 +8,11 @@
 use rayon::prelude::*;
 
 use super::{
-    BLOCK,
     binary::{Binary, Packed, Run},
-    node::{Child, Kind, Node},
     reference::Reference,
     weigh::Choices,
 };
+use crate::bvh::{BLOCK, Child, Kind, Node};
 
 /// Places of a segment, at most.
 const SEGMENT: u32 = 4096;
