@@ -87,13 +87,6 @@ impl Hitx8 {
             Hit { t, u, v, primitive: PrimitiveId(id.to_bits()) }
         })
     }
-
-    /// The hit of a lane.
-    #[inline]
-    fn lane(&self, i: usize) -> Hit {
-        let primitive = PrimitiveId(self.primitive.lane(i));
-        Hit { t: self.t.lane(i), u: self.u.lane(i), v: self.v.lane(i), primitive }
-    }
 }
 
 /// What is in the slots: the tree asks it to intersect a leaf's range.
@@ -126,14 +119,14 @@ pub trait Leaves {
     /// Where the data of a slot's block begin, to be asked for ahead of time.
     fn address(&self, slot: u32) -> *const u8;
 
-    /// One ray, which `splat` puts into all lanes, against `count` slots at once: the lanes are primitives,
-    /// and each keeps its own nearest hit, as for a packet. More than what was asked for may be tested.
+    /// One ray, which `splat` puts into all lanes, against `count` slots at once: the lanes are primitives.
+    /// More than what was asked for may be tested.
     fn intersect_block<const ANY: bool>(
         &self,
         first: u32,
         count: u32,
         splat: impl Fn() -> Rayx8,
-        hit: &mut Hitx8,
+        hit: &mut Hit,
     );
 
     /// One ray, from the scalar kernels.

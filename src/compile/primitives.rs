@@ -166,8 +166,8 @@ impl Primitives {
     /// that are stay in registers.
     #[cold]
     #[inline(never)]
-    fn intersect_rarely<const ANY: bool>(&self, first: u32, count: u32, ray: Rayx8, mut hit: Hitx8) -> Hitx8 {
-        self.intersect_packet::<ANY>(first, count, &ray, Mask8::first(1), &mut hit);
+    fn intersect_rarely<const ANY: bool>(&self, first: u32, count: u32, ray: Rayx8, mut hit: Hit) -> Hit {
+        self.intersect_single::<ANY>(first, count, &ray.lane(0), &mut hit);
         hit
     }
 
@@ -298,16 +298,21 @@ impl Leaves for Primitives {
         first: u32,
         count: u32,
         splat: impl Fn() -> Rayx8,
-        hit: &mut Hitx8,
+        hit: &mut Hit,
     ) {
         // The other triangles of the block are hit or missed as truly as the leaf's: no lane is masked.
         let Some(block) = self.triangles.get(first as usize / BLOCK) else {
             *hit = self.intersect_rarely::<ANY>(first, count, splat(), *hit);
             return;
         };
-        let ray = splat();
-        let (found, t, u, v) = block.lanes().intersect_all(&RayLanes { t_far: hit.t, ..ray });
-        accept::<ANY>(hit, found, (t, u, v), || u32x8::new(block.id));
+        let ray = RayLanes { t_far: f32x8::splat(hit.t), ..splat() };
+        let (found, t, u, v) = block.lanes().intersect(&ray, Mask8::splat(true));
+        let mut found = found.to_bitmask();
+        while found != 0 {
+            let lane = found.trailing_zeros() as usize % 8;
+            found &= found - 1;
+            accept_single::<ANY>(hit, (t.lane(lane), u.lane(lane), v.lane(lane)), block.id[lane]);
+        }
     }
 
     #[inline]

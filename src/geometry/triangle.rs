@@ -83,26 +83,6 @@ impl<R: Real> TriangleLanes<R> {
     /// Eight rays, eight triangles, or eight of each: (hit, t, u, v) of the lanes in `active`.
     #[inline]
     pub fn intersect(&self, ray: &RayLanes<R>, active: R::Mask) -> (R::Mask, R, R, R) {
-        let (inside, t, u, v) = self.cramer(ray);
-        let inside = inside & active;
-        if inside.none() {
-            return (inside, t, u, v);
-        }
-        let (hit, t) = self.clamp(ray, inside, t);
-        (hit, t, u, v)
-    }
-
-    /// The same for all lanes, without a branch.
-    #[inline]
-    pub fn intersect_all(&self, ray: &RayLanes<R>) -> (R::Mask, R, R, R) {
-        let (inside, t, u, v) = self.cramer(ray);
-        let (hit, t) = self.clamp(ray, inside, t);
-        (hit, t, u, v)
-    }
-
-    /// Where the lines of the rays meet the planes, and whether that is inside.
-    #[inline]
-    fn cramer(&self, ray: &RayLanes<R>) -> (R::Mask, R, R, R) {
         let zero = R::zero();
         let p = ray.dir.cross(self.e2);
         let det = self.e1.dot(p);
@@ -114,19 +94,16 @@ impl<R: Real> TriangleLanes<R> {
         let t = self.e2.dot(q) * inverse;
         // det = 0 gives an infinite or NaN inverse: u or v fails its comparison, or both numerators are
         // zero too and the products are NaN.
-        let inside = u.ge(zero) & v.ge(zero) & (u + v).le(R::one()) & !det.equal(zero);
-        (inside, t, u, v)
-    }
-
-    /// t, clamped to the triangles' slabs, and which of those `inside` are hits.
-    #[inline]
-    fn clamp(&self, ray: &RayLanes<R>, inside: R::Mask, t: R) -> (R::Mask, R) {
+        let inside = u.ge(zero) & v.ge(zero) & (u + v).le(R::one()) & active & !det.equal(zero);
+        if inside.none() {
+            return (inside, t, u, v);
+        }
         let (v1, v2) = (self.v0 + self.e1, self.v0 + self.e2);
         let bounds = (self.v0.min(v1).min(v2), self.v0.max(v1).max(v2));
         let all = (R::splat(f32::NEG_INFINITY), R::splat(f32::INFINITY));
         let (low, high) = aabb::interval(bounds, (ray.org, ray.rdir), all);
         let t = high.min(low.max(t));
-        (inside & low.le(high) & ray.t_near.lt(t) & t.le(ray.t_far), t)
+        (inside & low.le(high) & ray.t_near.lt(t) & t.le(ray.t_far), t, u, v)
     }
 }
 

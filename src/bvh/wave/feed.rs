@@ -157,7 +157,7 @@ impl Feed {
         let ray = &self.ready[next / LANES][next % LANES];
         match &self.entry {
             Some(node) if ANY => slot.start_at::<ANY>(ray, node),
-            _ => slot.start::<ANY>(ray),
+            _ => slot.start(ray),
         }
         true
     }

@@ -123,7 +123,7 @@ impl Bvh {
             for which in each(std::mem::take(&mut sets.done)) {
                 let slot = &mut slots[which];
                 if !fresh {
-                    stream.answer(slot.index(), &slot.settle::<ANY>());
+                    stream.answer(slot.index(), &slot.hit.settle::<ANY>());
                 }
                 if feed.next::<ANY, S>(self, stream, runs, slot) {
                     sets.insert(which, slot.child);

@@ -1,18 +1,16 @@
 //! A ray on its way.
 
 use super::feed::Ready;
-use crate::bvh::{Child, Hitx8, Leaves, Node, STACK};
+use crate::bvh::{Child, Leaves, Node, STACK};
 use crate::geometry::{Hit, PrimitiveId};
-use crate::simd::{Bits, LANES, Mask, Real, compress, f32x8, le_bits, sort_few_descending, u32x8};
+use crate::simd::{Bits, Real, compress, f32x8, le_bits, sort_few_descending, u32x8};
 
 /// The ray, what it has found, and what waits for it.
 #[repr(C, align(64))]
 pub(super) struct Slot {
     ray: Ready,
-    /// What has been hit: lanes are places in blocks.
-    hit: Hitx8,
-    /// Distance of the nearest hit so far, or the end of the ray.
-    t: f32,
+    /// The nearest hit so far; its t starts as the end of the ray.
+    pub(super) hit: Hit,
     pub(super) child: Child,
     top: u32,
     /// Distances of the children that wait, rounded down, nearest last, from the eighth on; not kept for
@@ -29,8 +27,7 @@ impl Slot {
     pub(super) fn new() -> Self {
         Self {
             ray: Ready::NOTHING,
-            hit: Hitx8::nothing(f32x8::zero()),
-            t: 0.0,
+            hit: Hit::MISS,
             child: Child::ABSENT,
             top: 0,
             keys: [0; STACK + 16],
@@ -46,12 +43,9 @@ impl Slot {
 
     /// Takes a ray to the root.
     #[inline]
-    pub(super) fn start<const ANY: bool>(&mut self, ray: &Ready) {
+    pub(super) fn start(&mut self, ray: &Ready) {
         self.ray = *ray;
-        self.t = ray.t_far();
-        if !ANY {
-            self.hit = Hitx8::nothing(f32x8::splat(self.t));
-        }
+        self.hit = Hit { t: ray.t_far(), ..Hit::MISS };
         self.child = Child::inner(0);
         self.top = 1;
     }
@@ -59,7 +53,7 @@ impl Slot {
     /// Takes a ray to the children of a node that is not the tree's.
     #[inline]
     pub(super) fn start_at<const ANY: bool>(&mut self, ray: &Ready, node: &Node) {
-        self.start::<ANY>(ray);
+        self.start(ray);
         self.step::<ANY>(node);
     }
 
@@ -67,7 +61,7 @@ impl Slot {
     #[inline]
     pub(super) fn step<const ANY: bool>(&mut self, node: &Node) {
         let mut low = f32x8::splat(self.ray.t_near());
-        let mut high = f32x8::splat(self.t);
+        let mut high = f32x8::splat(self.hit.t);
         for axis in 0..3 {
             let slab = self.ray.slab(axis);
             let (near, far) = node.slabs(axis, slab.negative);
@@ -96,35 +90,9 @@ impl Slot {
     #[inline(always)]
     pub(super) fn test<const ANY: bool, L: Leaves>(&mut self, leaves: &L, first: u32, count: u32) -> bool {
         let ray = &self.ray;
-        if ANY {
-            let mut hit = Hitx8::nothing(f32x8::splat(ray.t_far()));
-            leaves.intersect_block::<true>(first, count, || ray.splat(), &mut hit);
-            let blocked = hit.t.equal(f32x8::splat(f32::NEG_INFINITY)).any();
-            self.t = if blocked { f32::NEG_INFINITY } else { self.t };
-            self.pop::<true>();
-            return blocked | (self.child == Child::ABSENT);
-        }
-        leaves.intersect_block::<false>(first, count, || ray.splat(), &mut self.hit);
-        self.t = self.hit.t.reduce_min();
-        self.pop::<false>();
-        self.child == Child::ABSENT
-    }
-
-    /// What the ray has hit: the nearest of its lanes, and of those the one with the lowest id.
-    #[inline]
-    pub(super) fn settle<const ANY: bool>(&self) -> Hit {
-        if ANY {
-            return if self.t == f32::NEG_INFINITY { Hit::BLOCKED } else { Hit::MISS };
-        }
-        let mut at = self.hit.t.equal(f32x8::splat(self.t)).to_bitmask();
-        let mut nearest = self.hit.lane(at.trailing_zeros() as usize % LANES);
-        at &= at.wrapping_sub(1);
-        while at != 0 {
-            let other = self.hit.lane(at.trailing_zeros() as usize % LANES);
-            nearest = if other.closer_than(&nearest) { other } else { nearest };
-            at &= at - 1;
-        }
-        if nearest.primitive == PrimitiveId::NONE { Hit::MISS } else { nearest }
+        leaves.intersect_block::<ANY>(first, count, || ray.splat(), &mut self.hit);
+        self.pop::<ANY>();
+        (self.child == Child::ABSENT) | (ANY && self.hit.t == f32::NEG_INFINITY)
     }
 
     /// Moves to the nearest child that waits and is near enough.
@@ -138,7 +106,7 @@ impl Slot {
             loop {
                 let keys = <[u32; 8]>::try_from(&self.keys[top..top + 8]).unwrap_or_default();
                 let distances = f32x8::from_bits(u32x8::new(keys) & u32x8::splat(!PLACE));
-                let near = u32::from(le_bits(distances, f32x8::splat(self.t)));
+                let near = u32::from(le_bits(distances, f32x8::splat(self.hit.t)));
                 if near != 0 {
                     top = top + (31 - near.leading_zeros()) as usize - 8;
                     break;
@@ -148,5 +116,19 @@ impl Slot {
         }
         self.top = top as u32;
         self.child = Child::from_word(self.children[top]);
+    }
+}
+
+impl Hit {
+    /// What a traversal leaves behind, as an answer.
+    #[inline]
+    pub(super) fn settle<const ANY: bool>(self) -> Self {
+        if ANY {
+            if self.t == f32::NEG_INFINITY { Self::BLOCKED } else { Self::MISS }
+        } else if self.primitive == PrimitiveId::NONE {
+            Self::MISS
+        } else {
+            self
+        }
     }
 }
