@@ -77,11 +77,18 @@ fn every_way(scene: &Scene, rays: &[Ray], want: &[Hit]) {
     let given: Vec<usize> = (0..rays.len()).collect();
     let mut by_octant = given.clone();
     by_octant.sort_by_key(octant);
-    for order in [given, by_octant] {
-        let stream: Vec<Ray32> = order
-            .iter()
-            .map(|&i| Ray32::new(rays[i].org, rays[i].dir, rays[i].t_near, rays[i].t_far))
-            .collect();
+    // Rays that end at their hits hit the same; and segments with an end are what occlusion rays are.
+    let ends = |i: usize| {
+        let (ray, hit) = (&rays[i], &want[i]);
+        let end = if hit.primitive == PrimitiveId::NONE { ray.t_near.max(1.0) * 4.0 } else { hit.t };
+        end.min(ray.t_far)
+    };
+    let all = |i: usize| rays[i].t_far;
+    let orders =
+        [(&given, &all as &dyn Fn(usize) -> f32), (&by_octant, &all), (&given, &ends), (&by_octant, &ends)];
+    for (order, t_far) in orders {
+        let stream: Vec<Ray32> =
+            order.iter().map(|&i| Ray32::new(rays[i].org, rays[i].dir, rays[i].t_near, t_far(i))).collect();
         for way in [Way::Chosen, Way::Tile, Way::Packet, Way::Wave] {
             let mut tracer = Tracer::new(());
             let (mut hits, mut blocked) = (vec![Hit::MISS; rays.len()], vec![9; rays.len()]);
