@@ -103,8 +103,7 @@ pub trait Leaves {
         hit: &mut Hitx8,
     );
 
-    /// Eight packets, of which those in `mask` may hit something, against a leaf's
-    /// (first slot, count).
+    /// Eight packets, of which those in `mask` may hit something, against a leaf's (first slot, count).
     /// `pencils` are around them, if they come from one origin. Returns how many tests of a packet
     /// against a primitive that took.
     fn intersect_tile<const ANY: bool>(

@@ -2,7 +2,7 @@
 
 use super::{Bvh, Node, Stream, Way, cost::Cost, entry::Segments};
 use crate::geometry::{Ray, RayLanes, Rayx8};
-use crate::simd::{LANES, Mask, Mask8, Real, Vec3x8, f32x8};
+use crate::simd::{LANES, Mask, Mask8, Vec3x8};
 
 /// Packets in a run.
 pub(super) const PACKETS: usize = 8;
@@ -59,9 +59,8 @@ impl Run {
     /// The diagonal of the box around the directions, in lengths of its middle; `None` if they point into
     /// several octants.
     fn spread(&self) -> Option<f32> {
-        let (lowest, highest) = (f32x8::splat(f32::INFINITY), f32x8::splat(f32::NEG_INFINITY));
-        let mut low = Vec3x8 { x: lowest, y: lowest, z: lowest };
-        let mut high = Vec3x8 { x: highest, y: highest, z: highest };
+        let mut low = Vec3x8::splat(glam::Vec3::INFINITY);
+        let mut high = Vec3x8::splat(glam::Vec3::NEG_INFINITY);
         for (rays, &active) in self.rays.iter().zip(&self.active) {
             low = Vec3x8::select(active, rays.dir.min(low), low);
             high = Vec3x8::select(active, rays.dir.max(high), high);

@@ -44,7 +44,7 @@ impl Scene {
         tracer: &mut Tracer<T>,
     ) {
         assert_eq!(rays.len(), out.len(), "a hit for each ray");
-        self.trace::<false, _, T>(&mut Closest { rays, out }, way, tracer);
+        self.trace::<false, _, T>(&mut Slices { rays, out }, way, tracer);
     }
 
     /// [`Scene::occluded_stream`] by a way of the caller's choice, counting what it does.
@@ -59,71 +59,64 @@ impl Scene {
         tracer: &mut Tracer<T>,
     ) {
         assert_eq!(rays.len(), out.len(), "an answer for each ray");
-        self.trace::<true, _, T>(&mut Occluded { rays, out }, way, tracer);
+        self.trace::<true, _, T>(&mut Slices { rays, out }, way, tracer);
     }
 }
 
 /// Rays in an array, answers into another.
-struct Closest<'a> {
+struct Slices<'a, A> {
     rays: &'a [Ray32],
-    out: &'a mut [Hit],
+    out: &'a mut [A],
 }
 
-impl Stream for Closest<'_> {
+/// What is kept of a hit.
+trait Answer: Copy {
+    fn of(hit: &Hit) -> Self;
+}
+
+impl Answer for Hit {
+    #[inline]
+    fn of(hit: &Hit) -> Self {
+        *hit
+    }
+}
+
+impl Answer for u8 {
+    #[inline]
+    fn of(hit: &Hit) -> Self {
+        Self::from(*hit == Hit::BLOCKED)
+    }
+}
+
+impl<A: Answer> Stream for Slices<'_, A> {
     fn len(&self) -> usize {
         self.rays.len()
     }
 
     #[inline(always)]
     fn packet(&self, first: usize) -> (Rayx8, Mask8) {
-        packet(self.rays, first)
+        prefetch::<4>(self.rays.as_ptr().wrapping_add(first + AHEAD).cast());
+        let rays = &self.rays[first..self.rays.len().min(first + LANES)];
+        let packet = Ray32::packet(rays);
+        (packet, Mask8::first(rays.len()) & packet.t_near.le(packet.t_far))
     }
 
     #[inline]
     fn answer(&mut self, index: usize, hit: &Hit) {
-        self.out[index] = *hit;
+        self.out[index] = A::of(hit);
     }
 
     #[inline]
     fn answer_packet(&mut self, first: usize, hits: &[Hit]) {
         prefetch::<2>(self.out.as_ptr().wrapping_add(first + AHEAD).cast());
-        self.out[first..first + hits.len()].copy_from_slice(hits);
-    }
-}
-
-/// The same for occlusion.
-struct Occluded<'a> {
-    rays: &'a [Ray32],
-    out: &'a mut [u8],
-}
-
-impl Stream for Occluded<'_> {
-    fn len(&self) -> usize {
-        self.rays.len()
-    }
-
-    #[inline(always)]
-    fn packet(&self, first: usize) -> (Rayx8, Mask8) {
-        packet(self.rays, first)
-    }
-
-    #[inline]
-    fn answer(&mut self, index: usize, hit: &Hit) {
-        self.out[index] = u8::from(*hit == Hit::BLOCKED);
+        let out = &mut self.out[first..first + hits.len()];
+        out.iter_mut().zip(hits).for_each(|(out, hit)| *out = A::of(hit));
     }
 }
 
 /// Rays ahead of those that are loaded, which memory is asked for: a run of them, by far less than a page,
 /// is over before the processor sees that they come one after the other.
 const AHEAD: usize = 64;
-
-#[inline(always)]
-fn packet(rays: &[Ray32], first: usize) -> (Rayx8, Mask8) {
-    prefetch::<4>(rays.as_ptr().wrapping_add(first + AHEAD).cast());
-    let rays = &rays[first..rays.len().min(first + LANES)];
-    let packet = Ray32::packet(rays);
-    (packet, Mask8::first(rays.len()) & packet.t_near.le(packet.t_far))
-}
 
 #[cfg(test)]
 mod tests {

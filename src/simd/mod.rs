@@ -26,7 +26,7 @@ pub use integer::u32x8;
 pub use mask::Mask8;
 pub use prefetch::prefetch;
 pub use real::{Bits, Mask, Real};
-pub use sort::{sort_descending, sort_few_descending};
+pub use sort::sort_descending;
 pub use vector::{Vec3x8, Vector3, vector3};
 
 /// Rays in a packet, lanes in a register.

@@ -39,16 +39,10 @@ fn through(layers: &[Layer], keys: u32x8) -> u32x8 {
     u32x8(keys)
 }
 
-/// The lanes, greatest first. No branch depends on them.
-#[inline]
-pub fn sort_descending(keys: u32x8) -> u32x8 {
-    through(&NETWORK, keys)
-}
-
 /// The lanes, greatest first, where only the first `count` are not 0. Half the work for up to four, which
-/// never leave their half of a register.
+/// never leave their half of a register; beyond that no branch depends on the keys.
 #[inline]
-pub fn sort_few_descending(keys: u32x8, count: u32) -> u32x8 {
+pub fn sort_descending(keys: u32x8, count: u32) -> u32x8 {
     let (halves, merge) = NETWORK.split_at(3);
     let keys = through(halves, keys);
     if count <= 4 { keys } else { through(merge, keys) }
@@ -63,14 +57,14 @@ mod tests {
         // A network that sorts all 256 inputs of zeros and ones sorts everything (Knuth's 0–1 principle).
         for bits in 0..256u32 {
             let keys = std::array::from_fn(|i| bits >> i & 1);
-            let sorted = sort_descending(u32x8::new(keys)).to_array();
+            let sorted = sort_descending(u32x8::new(keys), 8).to_array();
             assert!(sorted.is_sorted_by(|a, b| a >= b), "{keys:?} {sorted:?}");
             let count = 8 - keys.iter().rev().take_while(|key| **key == 0).count();
-            assert_eq!(sort_few_descending(u32x8::new(keys), count as u32).to_array(), sorted);
+            assert_eq!(sort_descending(u32x8::new(keys), count as u32).to_array(), sorted);
         }
         let keys = [5, u32::MAX, 0, 7, 7, 1 << 31, 3, 2];
         let mut expected = keys;
         expected.sort_unstable_by(|a, b| b.cmp(a));
-        assert_eq!(sort_descending(u32x8::new(keys)).to_array(), expected);
+        assert_eq!(sort_descending(u32x8::new(keys), 8).to_array(), expected);
     }
 }

@@ -22,7 +22,7 @@ const SLOTS: usize = 16;
 /// waiting.
 const CACHED: usize = 8192;
 
-/// Slots and lists of a wave, kept from stream to stream.
+/// Slots of a wave and the rays that wait for one, kept from stream to stream.
 pub(super) struct Wave {
     slots: Box<[Slot; SLOTS]>,
     feed: Feed,

@@ -3,7 +3,7 @@
 use super::feed::Ready;
 use crate::bvh::{Child, Leaves, Node, STACK};
 use crate::geometry::{Hit, PrimitiveId};
-use crate::simd::{Bits, Real, compress, f32x8, le_bits, sort_few_descending, u32x8};
+use crate::simd::{Bits, Real, compress, f32x8, le_bits, sort_descending, u32x8};
 
 /// The ray, what it has found, and what waits for it.
 #[repr(C, align(64))]
@@ -76,7 +76,7 @@ impl Slot {
             compress(node.words(), enters)
         } else {
             let keys = (low.to_bits() & u32x8::splat(!PLACE)) | u32x8::new([0, 1, 2, 3, 4, 5, 6, 7]);
-            let keys = sort_few_descending(compress(keys, enters), count);
+            let keys = sort_descending(compress(keys, enters), count);
             self.keys[top + 8..top + 16].copy_from_slice(&keys.to_array());
             node.words().shuffle(keys & u32x8::splat(PLACE))
         };
