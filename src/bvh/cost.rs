@@ -22,6 +22,8 @@ impl Cost {
     pub(super) const PACKET: Self = Self(100.0);
     pub(super) const PACKET_NODE: Self = Self(35.0);
     pub(super) const PACKET_CHILD: Self = Self(25.0);
+    /// How much more packets cost whose nodes are far away in memory: they wait for one node after the other.
+    pub(super) const FAR: u32 = 2;
     /// A ray on its own, its nodes, and its blocks.
     pub(super) const RAY: Self = Self(50.0);
     pub(super) const RAY_NODE: Self = Self(28.0);

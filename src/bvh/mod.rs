@@ -13,6 +13,7 @@ mod build;
 mod cost;
 mod entry;
 mod node;
+mod occluder;
 mod packet;
 mod run;
 mod single;
@@ -34,6 +35,9 @@ use crate::simd::{Bits, LANES, Mask8, Real, f32x8, transpose, u32x8};
 
 /// Slots in a block. A leaf never crosses from one block into the next.
 pub const BLOCK: usize = 8;
+
+/// Nodes that fit into a second-level cache with what else is there.
+const CACHED: usize = 8192;
 
 /// A tree over boxes.
 #[derive(Debug, Default)]
@@ -155,6 +159,8 @@ const STACK: usize = 640;
 #[derive(Debug)]
 pub struct Traversal<T = ()> {
     stack: Box<[(Child, f32); STACK]>,
+    /// The leaf that blocked a ray last.
+    blocker: Child,
     /// What has been counted.
     pub tally: T,
 }
@@ -162,11 +168,17 @@ pub struct Traversal<T = ()> {
 impl<T> Traversal<T> {
     /// An empty stack.
     pub fn new(tally: T) -> Self {
-        Self { stack: Box::new([(Child::ABSENT, 0.0); STACK]), tally }
+        Self { stack: Box::new([(Child::ABSENT, 0.0); STACK]), blocker: Child::ABSENT, tally }
     }
 }
 
 impl Bvh {
+    /// Do the nodes fill more than a second-level cache?
+    #[inline]
+    fn is_far(&self) -> bool {
+        self.nodes.len() >= CACHED
+    }
+
     /// The nodes; the root is the first. Empty if there is nothing to hit.
     pub fn nodes(&self) -> &[Node] {
         &self.nodes

@@ -43,7 +43,7 @@ impl Bvh {
         // No box is entered before −∞: lanes without work fail every comparison by themselves.
         hit.t = f32x8::select(active, hit.t, f32x8::splat(f32::NEG_INFINITY));
         let beam = Beam::of_packet(ray, active);
-        let Traversal { stack, tally } = traversal;
+        let Traversal { stack, blocker, tally } = traversal;
         let mut top = 0;
         let mut node = start;
         let mut farthest = hit.t.reduce_max();
@@ -74,7 +74,11 @@ impl Bvh {
                         tally.leaf(count, active.count());
                         cost += Cost::PACKET_TEST * count;
                         leaves.intersect_packet::<ANY>(first, count, ray, active, hit);
+                        let before = farthest;
                         farthest = hit.t.reduce_max();
+                        if ANY && farthest < before {
+                            *blocker = child;
+                        }
                         if ANY && farthest == f32::NEG_INFINITY {
                             top = 0;
                         }

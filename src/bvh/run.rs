@@ -1,6 +1,6 @@
 //! Sixty-four rays that are judged together, and which way they go.
 
-use super::{Bvh, Node, Stream, Way, cost::Cost, entry::Segments};
+use super::{Bvh, Leaves, Node, Stream, Tally, Way, cost::Cost, entry::Segments, occluder::Occluder};
 use crate::geometry::{Ray, RayLanes, Rayx8};
 use crate::simd::{LANES, Mask, Mask8, Vec3x8};
 
@@ -23,6 +23,8 @@ pub(super) struct Run {
     len: usize,
     pub(super) rays: [Rayx8; PACKETS],
     pub(super) active: [Mask8; PACKETS],
+    /// Occlusion rays that are known to be blocked; they are not active.
+    pub(super) blocked: [Mask8; PACKETS],
 }
 
 impl Run {
@@ -36,10 +38,17 @@ impl Run {
         if self.len == 0 { 0 } else { u64::MAX >> (RUN - self.len) }
     }
 
+    /// The rays that are known to be blocked: ray i is bit i.
+    pub(super) fn blocked(&self) -> u64 {
+        let bits = |(i, blocked): (usize, &Mask8)| u64::from(blocked.to_bitmask()) << (i * LANES);
+        self.blocked.iter().enumerate().map(bits).sum()
+    }
+
     fn load<S: Stream>(&mut self, stream: &S, first: usize) {
         (self.first, self.len) = (first, RUN.min(stream.len() - first));
         for packet in 0..PACKETS {
             self.active[packet] = Mask8::splat(false);
+            self.blocked[packet] = Mask8::splat(false);
             if packet * LANES < self.len {
                 let (rays, active) = stream.packet(first + packet * LANES);
                 (self.rays[packet], self.active[packet]) = (rays, active);
@@ -90,6 +99,7 @@ pub(super) struct Runs {
     together: bool,
     /// What has been learnt from closest hits, and from occlusion.
     habits: [Habit; 2],
+    pub(super) occluder: Occluder,
 }
 
 /// What a ray cost lately; 0 before anything is known.
@@ -116,7 +126,7 @@ impl Default for Runs {
     fn default() -> Self {
         let nothing = RayLanes::splat(&Ray::new(glam::Vec3::ZERO, glam::Vec3::ONE, 0.0, -1.0));
         let (rays, active) = ([nothing; PACKETS], [Mask8::splat(false); PACKETS]);
-        let run = Box::new(Run { first: 0, len: 0, rays, active });
+        let run = Box::new(Run { first: 0, len: 0, rays, active, blocked: active });
         Self {
             run,
             next: 0,
@@ -124,6 +134,7 @@ impl Default for Runs {
             waiting: None,
             together: false,
             habits: [Habit::default(); 2],
+            occluder: Occluder::default(),
         }
     }
 }
@@ -132,13 +143,22 @@ impl Runs {
     /// Begins a stream.
     pub(super) fn start(&mut self, way: Way) {
         (self.next, self.forced, self.waiting) = (0, way, None);
+        self.occluder.forget();
     }
 
     /// The way that the next run goes; `None` at the end of the stream.
-    pub(super) fn peek<const ANY: bool, S: Stream>(&mut self, stream: &S) -> Option<Way> {
+    pub(super) fn peek<const ANY: bool, L: Leaves, S: Stream, T: Tally>(
+        &mut self,
+        leaves: &L,
+        stream: &S,
+        tally: &mut T,
+    ) -> Option<Way> {
         if self.waiting.is_none() && self.next < stream.len() {
             self.run.load(stream, self.next);
             self.next += self.run.len;
+            if ANY {
+                self.occluder.block(&mut self.run, leaves, tally);
+            }
             self.waiting = Some(if self.forced == Way::Chosen { self.choose::<ANY>() } else { self.forced });
         }
         self.waiting

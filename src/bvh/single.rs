@@ -16,7 +16,7 @@ impl Bvh {
         if self.nodes.is_empty() {
             return;
         }
-        let Traversal { stack, tally } = traversal;
+        let Traversal { stack, tally, .. } = traversal;
         stack[0] = (Child::inner(0), f32::NEG_INFINITY);
         let mut top = 1;
         while top > 0 {

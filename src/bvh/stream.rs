@@ -6,7 +6,7 @@
 //! depend on the way.
 
 use super::{
-    Bvh, Hitx8, Leaves, Tally, Traversal, Wave,
+    Bvh, Child, Hitx8, Leaves, Tally, Traversal, Wave,
     cost::Cost,
     run::{PACKETS, Run, Runs},
 };
@@ -72,7 +72,9 @@ impl Bvh {
     ) {
         let Tracer { traversal, runs, wave } = tracer;
         runs.start(way);
-        while let Some(way) = runs.peek::<ANY, S>(stream) {
+        // Leaves are those of one tree, and a tracer may go from one to the next.
+        traversal.blocker = Child::ABSENT;
+        while let Some(way) = runs.peek::<ANY, L, S, T>(leaves, stream, &mut traversal.tally) {
             match way {
                 // Runs that follow each other are one wave, which is filled and drained once.
                 Way::Wave => {
@@ -80,6 +82,7 @@ impl Bvh {
                 }
                 Way::Packet => {
                     let cost = self.packets::<ANY, L, S, T>(leaves, stream, runs.take(), traversal);
+                    runs.occluder.remember(traversal.blocker);
                     runs.learn_together::<ANY>(cost);
                 }
                 Way::Chosen | Way::Tile => {
@@ -136,9 +139,12 @@ impl Bvh {
                     traversal,
                 );
             }
-            answer::<ANY, S>(stream, run.first + i * LANES, active, &hit);
+            if ANY {
+                hit.t = f32x8::select(run.blocked[i], f32x8::splat(f32::NEG_INFINITY), hit.t);
+            }
+            answer::<ANY, S>(stream, run.first + i * LANES, active | run.blocked[i], &hit);
         }
-        cost
+        if self.is_far() { cost * Cost::FAR } else { cost }
     }
 }
 

@@ -28,7 +28,7 @@ impl Bvh {
             return Some(cost);
         }
         let (all, pencils) = (beams.around(), beams.pencils());
-        let Traversal { stack, tally } = traversal;
+        let Traversal { stack, tally, .. } = traversal;
         let mut farthest = f32x8::from_fn(|i| hits[i].t.reduce_max());
         let mut end = farthest.reduce_max();
         let mut masks = [0u8; super::STACK];

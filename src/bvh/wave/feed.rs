@@ -2,7 +2,7 @@
 
 use super::slot::Slot;
 use crate::bvh::{
-    Bvh, Child, Node, Stream, Way,
+    Bvh, Child, Leaves, Node, Stream, Tally, Way,
     run::{PACKETS, RUN, Runs},
 };
 use crate::geometry::{Hit, RayLanes, Rayx8};
@@ -139,15 +139,17 @@ impl Feed {
     /// Starts the next ray in a slot; false if there is none, or if the next run goes another way. Rays that
     /// can't hit anything are answered.
     #[inline]
-    pub(super) fn next<const ANY: bool, S: Stream>(
+    pub(super) fn next<const ANY: bool, L: Leaves, S: Stream, T: Tally>(
         &mut self,
         bvh: &Bvh,
+        leaves: &L,
         stream: &mut S,
         runs: &mut Runs,
         slot: &mut Slot,
+        tally: &mut T,
     ) -> bool {
         while self.waiting == 0 {
-            if runs.peek::<ANY, S>(stream) != Some(Way::Wave) {
+            if runs.peek::<ANY, L, S, T>(leaves, stream, tally) != Some(Way::Wave) {
                 return false;
             }
             self.refill::<ANY, S>(bvh, stream, runs);
@@ -177,9 +179,12 @@ impl Feed {
             }
         }
         self.waiting &= run.there();
+        let blocked = if ANY { run.blocked() } else { 0 };
         let mut never = run.there() & !self.waiting;
         while never != 0 {
-            stream.answer(run.first + never.trailing_zeros() as usize, &Hit::MISS);
+            let which = never.trailing_zeros() as usize;
+            let hit = if blocked >> which & 1 != 0 { Hit::BLOCKED } else { Hit::MISS };
+            stream.answer(run.first + which, &hit);
             never &= never - 1;
         }
     }

@@ -18,10 +18,6 @@ use slot::Slot;
 /// Rays in turn: fewer leave latency open, more leave the first-level cache.
 const SLOTS: usize = 16;
 
-/// Trees of fewer nodes are near enough for occlusion rays, whose steps are short: asking costs more than
-/// waiting.
-const CACHED: usize = 8192;
-
 /// Slots of a wave and the rays that wait for one, kept from stream to stream.
 pub(super) struct Wave {
     slots: Box<[Slot; SLOTS]>,
@@ -77,7 +73,8 @@ impl Bvh {
         wave: &mut Wave,
         tally: &mut T,
     ) {
-        if ANY && self.nodes.len() < CACHED {
+        // Occlusion rays take short steps: asking for what is near costs them more than waiting.
+        if ANY && !self.is_far() {
             self.in_turn::<ANY, false, L, S, T>(leaves, stream, runs, wave, tally);
         } else {
             self.in_turn::<ANY, true, L, S, T>(leaves, stream, runs, wave, tally);
@@ -112,7 +109,11 @@ impl Bvh {
                 if let Kind::Leaf { first, count } = slot.child.kind() {
                     tally.leaf(count, 1);
                     blocks += 1;
+                    let leaf = slot.child;
                     done = slot.test::<ANY, L>(leaves, first, count);
+                    if ANY && slot.hit.t == f32::NEG_INFINITY {
+                        runs.occluder.remember(leaf);
+                    }
                 }
                 ask_for::<ASK, L>(slot.child, &self.nodes, leaves);
                 sets.insert(which, slot.child);
@@ -125,7 +126,7 @@ impl Bvh {
                 if !fresh {
                     stream.answer(slot.index(), &slot.hit.settle::<ANY>());
                 }
-                if feed.next::<ANY, S>(self, stream, runs, slot) {
+                if feed.next::<ANY, L, S, T>(self, leaves, stream, runs, slot, tally) {
                     sets.insert(which, slot.child);
                 }
             }
