@@ -2,36 +2,39 @@
 
 use glam::{DAffine3, DMat3, DVec3, Vec2, Vec3, vec2};
 
-use super::surfaces::{Interpolate, Vertex};
+use super::surfaces::{Interpolate, Surfaces, Vertex};
 use crate::math::acos;
 use crate::scene::Mesh;
 
-/// Triangles of one shape.
-#[derive(Debug)]
-pub(super) struct WorldMesh {
-    pub(super) vertices: Vec<Vertex>,
-    pub(super) triangles: Vec<[u32; 3]>,
+/// What a shape's triangles get from their vertices.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Interpolated {
     pub(super) uv: Interpolate,
     pub(super) normal: Interpolate,
 }
 
-/// A loaded mesh. Without normals of its own it gets smooth ones.
-pub(super) fn world_mesh(mesh: &Mesh, to_world: &DAffine3, face_normals: bool) -> WorldMesh {
-    let positions: Vec<Vec3> =
-        mesh.positions.iter().map(|p| to_world.transform_point3(p.as_dvec3()).as_vec3()).collect();
-    let normals = if face_normals {
-        vec![Vec3::ZERO; positions.len()]
-    } else if mesh.normals.is_empty() {
-        smooth_normals(&positions, &mesh.triangles)
-    } else {
-        let to_world = normal_matrix(to_world);
-        mesh.normals.iter().map(|n| (to_world * n.as_dvec3()).normalize_or_zero().as_vec3()).collect()
+/// Adds a loaded mesh. Without normals of its own it gets smooth ones. Nothing is held twice: a mesh may be
+/// as big as memory allows.
+pub(super) fn add_mesh(
+    surfaces: &mut Surfaces,
+    mesh: &Mesh,
+    to_world: &DAffine3,
+    face_normals: bool,
+) -> Interpolated {
+    let first = surfaces.vertices.len();
+    let normals = normal_matrix(to_world);
+    let vertex = |i: usize, p: &Vec3| {
+        let position = to_world.transform_point3(p.as_dvec3()).as_vec3();
+        let given = mesh.normals.get(i).filter(|_| !face_normals);
+        let normal = given.map_or(Vec3::ZERO, |n| (normals * n.as_dvec3()).normalize_or_zero().as_vec3());
+        Vertex::new(position, normal, mesh.uvs.get(i).copied().unwrap_or(Vec2::ZERO))
     };
-    let uv = |i: usize| mesh.uvs.get(i).copied().unwrap_or(Vec2::ZERO);
-    let vertex = |(i, (&p, n)): (usize, (&Vec3, Vec3))| Vertex::new(p, n, uv(i));
-    WorldMesh {
-        vertices: positions.iter().zip(normals).enumerate().map(vertex).collect(),
-        triangles: mesh.triangles.clone(),
+    surfaces.vertices.extend(mesh.positions.iter().enumerate().map(|(i, p)| vertex(i, p)));
+    if !face_normals && mesh.normals.is_empty() {
+        smooth_normals(&mut surfaces.vertices[first..], &mesh.triangles);
+    }
+    surfaces.triangles.extend(mesh.triangles.iter().map(|t| t.map(|i| i + first as u32)));
+    Interpolated {
         uv: if mesh.uvs.is_empty() { Interpolate::Face } else { Interpolate::Vertices },
         normal: if face_normals { Interpolate::Face } else { Interpolate::Vertices },
     }
@@ -44,18 +47,19 @@ pub(super) fn normal_matrix(to_world: &DAffine3) -> DMat3 {
 
 /// Sums of face normals, weighted by the angle of the corner, so that how a face is cut into triangles
 /// does not matter (Thürmer & Wüthrich 1998).
-fn smooth_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
-    let mut normals = vec![Vec3::ZERO; positions.len()];
+fn smooth_normals(vertices: &mut [Vertex], triangles: &[[u32; 3]]) {
     for corners in triangles {
-        let p = corners.map(|i| positions[i as usize]);
+        let p = corners.map(|i| vertices[i as usize].position);
         let face = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
         for k in 0..3 {
             let (a, b) = (p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
             let cos = a.normalize_or_zero().dot(b.normalize_or_zero());
-            normals[corners[k] as usize] += face * acos(cos);
+            vertices[corners[k] as usize].normal += face * acos(cos);
         }
     }
-    normals.into_iter().map(Vec3::normalize_or_zero).collect()
+    for vertex in vertices {
+        vertex.normal = vertex.normal.normalize_or_zero();
+    }
 }
 
 /// A quadrilateral: centre, two half edges along which u and v grow, and the side it is seen from.
@@ -67,41 +71,36 @@ struct Face {
 }
 
 /// [-1, 1]² in xy.
-pub(super) fn rectangle(to_world: &DAffine3) -> WorldMesh {
-    faces(to_world, &[Face { centre: DVec3::ZERO, du: DVec3::X, dv: DVec3::Y, normal: DVec3::Z }])
+pub(super) fn add_rectangle(surfaces: &mut Surfaces, to_world: &DAffine3) -> Interpolated {
+    faces(surfaces, to_world, &[Face { centre: DVec3::ZERO, du: DVec3::X, dv: DVec3::Y, normal: DVec3::Z }])
 }
 
 /// [-1, 1]³; the directions of uv are those of the format's table.
-pub(super) fn cube(to_world: &DAffine3) -> WorldMesh {
+pub(super) fn add_cube(surfaces: &mut Surfaces, to_world: &DAffine3) -> Interpolated {
     let face = |normal: DVec3, du, dv| Face { centre: normal, du, dv, normal };
     let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
     faces(
+        surfaces,
         to_world,
         &[face(x, y, -z), face(-x, y, z), face(y, -x, -z), face(-y, z, x), face(z, y, x), face(-z, -y, x)],
     )
 }
 
-fn faces(to_world: &DAffine3, faces: &[Face]) -> WorldMesh {
-    let mut mesh = WorldMesh {
-        vertices: vec![],
-        triangles: vec![],
-        uv: Interpolate::Vertices,
-        normal: Interpolate::Face,
-    };
+fn faces(surfaces: &mut Surfaces, to_world: &DAffine3, faces: &[Face]) -> Interpolated {
     let mirrored = to_world.matrix3.determinant() < 0.0;
     for face in faces {
-        let first = mesh.vertices.len() as u32;
+        let first = surfaces.vertices.len() as u32;
         for (s, t) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)] {
             let local = face.centre + face.du * (2.0 * s - 1.0) + face.dv * (2.0 * t - 1.0);
             let position = to_world.transform_point3(local).as_vec3();
-            mesh.vertices.push(Vertex::new(position, Vec3::ZERO, vec2(s as f32, t as f32)));
+            surfaces.vertices.push(Vertex::new(position, Vec3::ZERO, vec2(s as f32, t as f32)));
         }
         // The winding makes e₁ × e₂ the normal, in the world too.
         let agrees = (face.du.cross(face.dv).dot(face.normal) > 0.0) != mirrored;
         let corners = if agrees { [[0, 1, 2], [0, 2, 3]] } else { [[0, 2, 1], [0, 3, 2]] };
-        mesh.triangles.extend(corners.map(|t| t.map(|i| i + first)));
+        surfaces.triangles.extend(corners.map(|t| t.map(|i| i + first)));
     }
-    mesh
+    Interpolated { uv: Interpolate::Vertices, normal: Interpolate::Face }
 }
 
 #[cfg(test)]
@@ -111,7 +110,8 @@ mod tests {
     #[test]
     fn faces_look_outward_even_when_mirrored() {
         for scale in [DVec3::ONE, DVec3::new(-1.0, 2.0, 1.0)] {
-            let mesh = cube(&DAffine3::from_scale(scale));
+            let mut mesh = Surfaces::default();
+            add_cube(&mut mesh, &DAffine3::from_scale(scale));
             assert_eq!(mesh.triangles.len(), 12);
             for t in &mesh.triangles {
                 let [a, b, c] = t.map(|i| mesh.vertices[i as usize].position);
@@ -127,8 +127,12 @@ mod tests {
         positions.push(Vec3::new(-1.0, -1.0, 2.0));
         positions.push(Vec3::new(1.0, -1.0, 2.0));
         let wall = [[0, 4, 5], [0, 5, 1]];
-        let floor =
-            |diagonal: [[u32; 3]; 2]| smooth_normals(&positions, &[wall.as_slice(), &diagonal].concat());
+        let floor = |diagonal: [[u32; 3]; 2]| -> Vec<Vec3> {
+            let mut vertices: Vec<Vertex> =
+                positions.iter().map(|&p| Vertex::new(p, Vec3::ZERO, Vec2::ZERO)).collect();
+            smooth_normals(&mut vertices, &[wall.as_slice(), &diagonal].concat());
+            vertices.iter().map(|v| v.normal).collect()
+        };
         let (a, b) = (floor([[0, 1, 2], [0, 2, 3]]), floor([[0, 1, 3], [1, 2, 3]]));
         for (a, b) in a.iter().zip(&b) {
             assert!((*a - *b).length() < 1e-6, "{a} {b}");

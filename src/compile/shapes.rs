@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::{
     CompileError, MAX_PRIMITIVES, References, canonical,
-    mesh::{self, WorldMesh},
+    mesh::{self, Interpolated},
     primitives::{CANONICAL, Primitive, SPHERE, TRIANGLE},
     surfaces::{CanonicalRow, Class, ShapeRow, Surfaces},
 };
@@ -29,6 +29,7 @@ pub(super) fn compile(
     lights: &mut Vec<Light>,
 ) -> Result<Shapes, CompileError> {
     let mut all = Shapes { surfaces: Surfaces::default(), references: vec![], degenerate: 0 };
+    all.reserve(shapes);
     for shape in shapes {
         let count = all.surfaces.shape_of.len() as u64 + primitive_count(&shape.geometry);
         if count > MAX_PRIMITIVES {
@@ -49,6 +50,21 @@ fn primitive_count(geometry: &Geometry) -> u64 {
 }
 
 impl Shapes {
+    /// Room for all meshes at once: columns that double as they grow would leave half of it empty.
+    fn reserve(&mut self, shapes: &[Shape]) {
+        let meshes = || {
+            shapes.iter().filter_map(|shape| match &shape.geometry {
+                Geometry::Mesh { mesh, .. } => Some(mesh),
+                _ => None,
+            })
+        };
+        let triangles = meshes().map(|mesh| mesh.triangles.len()).sum();
+        self.surfaces.vertices.reserve_exact(meshes().map(|mesh| mesh.positions.len()).sum());
+        self.surfaces.triangles.reserve_exact(triangles);
+        self.surfaces.shape_of.reserve_exact(triangles);
+        self.references.reserve_exact(triangles);
+    }
+
     fn add(
         &mut self,
         shape: &Shape,
@@ -58,11 +74,12 @@ impl Shapes {
         let to_world = &shape.to_world;
         let first = self.surfaces.shape_of.len() as u32;
         let references = self.references.len();
+        let shines = shape.radiance.is_some();
         let (class, first_in_class, emitting) = match &shape.geometry {
-            Geometry::Rectangle => self.add_mesh(mesh::rectangle(to_world)),
-            Geometry::Cube => self.add_mesh(mesh::cube(to_world)),
+            Geometry::Rectangle => self.add_triangles(shines, |all| mesh::add_rectangle(all, to_world)),
+            Geometry::Cube => self.add_triangles(shines, |all| mesh::add_cube(all, to_world)),
             Geometry::Mesh { mesh, face_normals } => {
-                self.add_mesh(mesh::world_mesh(mesh, to_world, *face_normals))
+                self.add_triangles(shines, |all| mesh::add_mesh(all, mesh, to_world, *face_normals))
             }
             Geometry::Sphere { center, radius } => {
                 let row = canonical::sphere(to_world, *center, *radius);
@@ -113,25 +130,28 @@ impl Shapes {
         index
     }
 
-    fn add_mesh(&mut self, mesh: WorldMesh) -> (Class, usize, Emitting) {
-        let WorldMesh { vertices, triangles, uv, normal } = mesh;
+    /// Numbers the triangles that `add` adds. Those of a shape that shines are kept for its light, too.
+    fn add_triangles(
+        &mut self,
+        shines: bool,
+        add: impl FnOnce(&mut Surfaces) -> Interpolated,
+    ) -> (Class, usize, Emitting) {
         let first = self.surfaces.triangles.len();
-        let base = self.surfaces.vertices.len() as u32;
+        let Interpolated { uv, normal } = add(&mut self.surfaces);
         let mut emitting = Vec::new();
-        for corners in &triangles {
-            let [v0, v1, v2] = corners.map(|i| vertices[i as usize].position);
-            let triangle = Triangle::new(v0, v1, v2);
+        for index in first..self.surfaces.triangles.len() {
+            let triangle = self.surfaces.triangle(index);
             if triangle.e1.cross(triangle.e2) == Vec3::ZERO {
                 // Its determinant would be noise: a hit where there is nothing.
                 self.number();
                 self.degenerate += 1;
             } else {
                 self.refer(triangle.bounds(), TRIANGLE);
-                emitting.push(triangle);
+                if shines {
+                    emitting.push(triangle);
+                }
             }
         }
-        self.surfaces.triangles.extend(triangles.iter().map(|t| t.map(|i| i + base)));
-        self.surfaces.vertices.extend(vertices);
         (Class::Triangles { uv, normal }, first, Emitting::triangles(emitting))
     }
 
@@ -160,15 +180,17 @@ fn emitter_extent(emitting: &Emitting) -> Vec3 {
 }
 
 impl Surfaces {
+    fn triangle(&self, index: usize) -> Triangle {
+        let [v0, v1, v2] = self.triangles[index].map(|i| self.vertices[i as usize].position);
+        Triangle::new(v0, v1, v2)
+    }
+
     /// What the kernels need of a primitive.
     pub(super) fn primitive(&self, id: u32) -> Primitive {
         let shape = self.shape(id);
         let index = (id - shape.first + shape.first_in_class) as usize;
         match shape.class {
-            Class::Triangles { .. } => {
-                let [v0, v1, v2] = self.triangles[index].map(|i| self.vertices[i as usize].position);
-                Primitive::Triangle(Triangle::new(v0, v1, v2))
-            }
+            Class::Triangles { .. } => Primitive::Triangle(self.triangle(index)),
             Class::Sphere => Primitive::Sphere(self.spheres[index].sphere),
             Class::Canonical => Primitive::Canonical(self.canonicals[index].surface),
         }
