@@ -17,6 +17,7 @@ mod render;
 mod report;
 mod source;
 mod threads;
+mod way;
 
 use std::{process::ExitCode, sync::LazyLock};
 
