@@ -24,8 +24,7 @@ mod model;
 mod phong;
 mod plastic;
 mod principled;
-#[cfg(test)]
-mod proof;
+pub mod proof;
 mod rough_conductor;
 mod rough_dielectric;
 mod rough_plastic;
