@@ -1,6 +1,7 @@
 //! Files to a [`SceneDescription`]: the door at which bad numbers stop.
 
 mod bare;
+mod brdf;
 mod error;
 pub mod generate;
 mod mitsuba;
@@ -9,6 +10,7 @@ mod obj;
 mod obj_materials;
 mod obj_text;
 mod ply;
+mod spectrum;
 mod text;
 
 use std::path::Path;
