@@ -39,7 +39,7 @@ Examples:
 
 Exit codes:
   0  done
-  1  a file could not be read, understood or written
+  1  a file could not be read, understood or written, or a model failed its check
   2  the command line was not understood
   3  this processor lacks instructions that the program was compiled to use";
 

@@ -13,10 +13,10 @@ use crate::{
     simd::f32x8,
 };
 
-/// Pairs of directions for reciprocity, and a turn's for isotropy.
+/// Pairs of directions for reciprocity; a tenth of them for each turn of isotropy.
 const PAIRS: usize = 1_000_000;
 /// Blocks of pairs, each with a seed of its own: what is found does not depend on the number of threads.
-const BLOCKS: usize = 64;
+const BLOCKS: usize = 50;
 /// Samples an angle for the density.
 const SAMPLES: usize = 1_000_000;
 /// Relative difference beyond which f(a, b) is not f(b, a).
@@ -100,7 +100,7 @@ fn degrees(w: Vec3) -> f32 {
 
 fn reciprocal<M: Reflector<f32x8> + Sync>(model: &M) -> Row {
     let seeds = (0..BLOCKS as u64).into_par_iter();
-    let blocks = seeds.map(|seed| reciprocity(model, PAIRS.div_ceil(BLOCKS), NOT_RECIPROCAL, seed));
+    let blocks = seeds.map(|seed| reciprocity(model, PAIRS / BLOCKS, NOT_RECIPROCAL, seed));
     // Blocks in their order: the first of equals is told.
     let all = blocks.collect::<Vec<_>>().into_iter().fold(Worst::default(), Worst::and);
     let most = format!(

@@ -15,12 +15,14 @@ pub(super) fn with_roughness(material: &Material, alpha: f32) -> Option<Material
     let mut material = material.clone();
     match &mut material {
         Material::RoughConductor { roughness, .. } | Material::RoughDielectric { roughness, .. } => {
-            all(roughness)
+            all(roughness);
         }
-        Material::Plastic { roughness: Some((_, coat)), .. } => *coat = alpha,
+        Material::Plastic { roughness: Some((_, coat)), .. } => *coat = everywhere(),
         Material::Ward { alpha_u, alpha_v, .. } => (*alpha_u, *alpha_v) = (everywhere(), everywhere()),
         Material::Principled(principled) => principled.roughness = everywhere(),
-        Material::Phong { exponent, .. } => *exponent = 2.0 / (alpha * alpha) - 2.0,
+        Material::Phong { exponent, .. } => {
+            *exponent = Texture::Constant(Rgb::splat(2.0 / (alpha * alpha) - 2.0));
+        }
         _ => return None,
     }
     Some(material)

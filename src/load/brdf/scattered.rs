@@ -119,10 +119,10 @@ mod tests {
     use super::*;
     use crate::material::Measured;
 
-    /// f = 0.2 + a broad lobe about the mirror direction, where an instrument might look.
+    /// A broad lobe about the mirror direction; like that of any isotropic surface, it is even in the turn.
     fn lobe(theta_i: f64, theta_o: f64, turn: f64) -> f64 {
         let p = mapped(theta_i, theta_o, turn);
-        0.2 + 0.3 * p.y * p.y + 0.1 * p.x
+        0.2 + 0.15 * (1.0 - turn.cos()) + 0.1 * p.x
     }
 
     #[test]
