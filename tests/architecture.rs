@@ -44,7 +44,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("image", &["picture/"]),
     ("indicatif", &["cli/"]),
     ("kuva", &["lobe/"]),
-    ("libm", &["math/", "compile/", "load/", "lobe/", "picture/"]),
+    ("libm", &["math/", "compile/", "load/", "picture/"]),
     ("miette", &["cli/", "load/error.rs"]),
     ("ply_rs_bw", &["load/ply.rs"]),
     ("rayon", &["bvh/", "compile/", "render/", "lobe/", "cli/"]),
