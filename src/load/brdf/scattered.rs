@@ -119,10 +119,11 @@ mod tests {
     use super::*;
     use crate::material::Measured;
 
-    /// A broad lobe about the mirror direction; like that of any isotropic surface, it is even in the turn.
+    /// A broad lobe about the mirror direction; as of any isotropic surface, it is even in the turn, and where
+    /// one direction is the normal there is no turn to depend on.
     fn lobe(theta_i: f64, theta_o: f64, turn: f64) -> f64 {
         let p = mapped(theta_i, theta_o, turn);
-        0.2 + 0.15 * (1.0 - turn.cos()) + 0.1 * p.x
+        0.2 + p.x * (0.25 - 0.15 * turn.cos())
     }
 
     #[test]
