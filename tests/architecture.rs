@@ -30,21 +30,24 @@ const FLOORS: &[(&str, u32)] = &[
     ("compile", 5),
     ("load", 5),
     ("render", 6),
-    ("cli", 7),
+    ("lobe", 7),
+    ("cli", 8),
 ];
 
 /// Where each crate of Cargo.toml may be named: folders end in `/`; `""` is the whole house.
 const DOORS: &[(&str, &[&str])] = &[
+    ("base64", &["lobe/"]),
     ("bumpalo", &["render/"]),
     ("clap", &["cli/"]),
     ("exr", &["picture/"]),
     ("glam", &[""]),
     ("image", &["picture/"]),
     ("indicatif", &["cli/"]),
+    ("kuva", &["lobe/"]),
     ("libm", &["math/", "compile/", "load/", "picture/"]),
     ("miette", &["cli/", "load/error.rs"]),
     ("ply_rs_bw", &["load/ply.rs"]),
-    ("rayon", &["bvh/", "compile/", "render/", "cli/"]),
+    ("rayon", &["bvh/", "compile/", "render/", "lobe/", "cli/"]),
     ("roxmltree", &["load/"]),
     ("serde", &["cli/"]),
     ("serde_json", &["cli/"]),

@@ -207,3 +207,58 @@ fn a_closed_pipe_is_not_a_panic() {
         assert!(!stderr(&output).contains("panicked"), "{}", stderr(&output));
     }
 }
+
+#[test]
+fn a_model_is_drawn_tabulated_and_checked() {
+    let folder = folder("brdf");
+    let (svg, png, csv) = (path(&folder, "a.svg"), path(&folder, "a.png"), path(&folder, "a.csv"));
+    for plot in [&svg, &png] {
+        let model = "plastic:diffuse_reflectance=0.1 0.2 0.6";
+        let output = packlight(&["brdf", model, "-o", plot, "--csv", &csv, "--spp", "1"]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    }
+    let drawn = fs::read_to_string(&svg).expect("it was written");
+    assert!(drawn.starts_with("<svg") && drawn.ends_with("</svg>"), "{}", &drawn[..80]);
+    assert_eq!(drawn.matches("<image ").count(), 2, "the lobe and the sphere");
+    assert!(fs::read(&png).expect("it was written").starts_with(b"\x89PNG"));
+    let table = fs::read_to_string(&csv).expect("it was written");
+    for part in [
+        "quantity,incident_degrees,outgoing_degrees,r,g,b\n",
+        "\nslice,40,",
+        "\nspike,80,",
+        "\nreflected,89,,",
+    ] {
+        assert!(table.contains(part), "{part}");
+    }
+    let names: Vec<_> = fs::read_dir(&folder).expect("readable").collect();
+    assert_eq!(names.len(), 3, "something was left behind");
+}
+
+#[test]
+fn a_model_that_is_none_fails_its_check() {
+    let good = packlight(&["brdf", "roughconductor:alpha=0.3,material=Au", "--check"]);
+    assert_eq!(good.status.code(), Some(0), "{}", stdout(&good));
+    for property in ["reciprocity", "albedo", "isotropy", "pdf = 1", "samples follow pdf"] {
+        assert!(stdout(&good).contains(property), "{property} is not in\n{}", stdout(&good));
+    }
+    let toon = packlight(&["brdf", "toon", "--check"]);
+    assert_eq!(toon.status.code(), Some(1));
+    assert!(stdout(&toon).lines().any(|line| line.contains("reciprocity") && line.ends_with("NO")));
+    assert!(stderr(&toon).contains("toon is not a reflection model"), "{}", stderr(&toon));
+}
+
+#[test]
+fn what_brdf_does_not_understand_is_refused() {
+    fails(&["brdf"], 2, "MODEL");
+    fails(&["brdf", "diffuse"], 2, "nothing is asked for");
+    fails(&["brdf", "diffuse", "-o", "a.exr"], 2, ".svg or .png");
+    fails(&["brdf", "diffuse", "--check", "--light", "90"], 2, "less than 90");
+    fails(&["brdf", "--scene", "a.xml", "--check"], 2, "--material");
+    fails(&["brdf", "diffuse", "--scene", "a.xml", "--material", "b", "--check"], 2, "cannot be used with");
+    fails(&["brdf", "sheet"], 2, "--output");
+    fails(&["brdf", "difuse", "--check"], 1, "did you mean `diffuse`?");
+    fails(&["brdf", "diffuse:reflectance=2", "--check"], 1, "MODEL:1:21");
+    fails(&["brdf", "diffuse", "-o", "no/such/a.svg"], 1, "create it first");
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/spheres.xml");
+    fails(&["brdf", "--scene", scene, "--material", "mettal", "--check"], 1, "did you mean `metal`?");
+}

@@ -178,7 +178,7 @@ fn defaults_are_those_of_mitsuba() {
             Material::Phong {
                 diffuse_reflectance: constant(0.5),
                 specular_reflectance: constant(0.2),
-                exponent: 30.0,
+                exponent: constant(30.0),
             },
         ]
     );

@@ -3,6 +3,7 @@
 //! The only room that prints. stdout holds what was asked for, stderr everything else.
 
 mod bench;
+mod brdf;
 mod console;
 pub mod exit;
 mod failure;
@@ -35,10 +36,11 @@ Examples:
   packlight render bunny.obj -o normals.exr --integrator aov
   packlight info scenes/cornell.xml --json
   packlight bench gen:terrain:1M --threads 1
+  packlight brdf roughconductor:alpha=0.3,material=Au -o lobe.svg
 
 Exit codes:
   0  done
-  1  a file could not be read, understood or written
+  1  a file could not be read, understood or written, or a model failed its check
   2  the command line was not understood
   3  this processor lacks instructions that the program was compiled to use";
 
@@ -58,6 +60,8 @@ enum Command {
     Info(info::Arguments),
     /// Measure how fast rays are traced
     Bench(bench::Arguments),
+    /// Plot a reflection model, or prove that it is one
+    Brdf(Box<brdf::Arguments>),
 }
 
 /// Reads the command line, does what it says, and returns one of the codes in [`exit`].
@@ -68,6 +72,7 @@ pub fn run() -> ExitCode {
         Command::Render(arguments) => render::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
+        Command::Brdf(arguments) => brdf::run(&arguments),
     });
     match done {
         Ok(()) => ExitCode::from(exit::SUCCESS),

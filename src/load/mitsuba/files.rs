@@ -9,7 +9,7 @@ use std::{
 
 use super::properties::Object;
 use crate::{
-    load::{LoadError, Warning, obj, ply},
+    load::{LoadError, Warning, brdf, obj, ply},
     picture::{self, Encoding, Picture},
     scene::{MerlTable, Mesh},
 };
@@ -47,11 +47,17 @@ impl Files {
         Ok(mesh)
     }
 
-    /// The measured table that the `filename` of a `merl` names.
+    /// The measured table that the `filename` of a `merl` names: MERL's own, or scattered measurements in a
+    /// `.brdf`.
     pub(super) fn table(&mut self, bsdf: Object) -> Result<Arc<MerlTable>, LoadError> {
         let path = existing_file(bsdf)?;
         if let Some(table) = self.tables.get(&path) {
             return Ok(Arc::clone(table));
+        }
+        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("brdf")) {
+            let table = Arc::new(brdf::read(&path)?);
+            self.tables.insert(path, Arc::clone(&table));
+            return Ok(table);
         }
         let refusal = |why: String| bsdf.error_at("filename", format!("the table can't be used: {why}"));
         let bytes = fs::read(&path).map_err(|error| refusal(error.to_string()))?;

@@ -21,6 +21,7 @@ mod properties;
 mod reader;
 mod sensor;
 mod shape;
+mod single;
 mod source;
 mod texture;
 mod transform;
@@ -31,6 +32,7 @@ use std::{collections::HashMap, path::Path};
 
 use files::Files;
 use properties::Object;
+pub(super) use single::{read_by_id, read_line};
 use vocabulary::Class;
 
 use super::{LoadError, Loaded};
