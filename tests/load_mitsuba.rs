@@ -5,6 +5,7 @@ use std::{fs, path::Path, sync::Arc};
 use miette::Diagnostic;
 use packlight::{
     load::{LoadError, LoadOptions, Loaded, load},
+    picture::{Channel, Picture, Preview, save},
     scene::*,
 };
 
@@ -276,6 +277,41 @@ fn shapes_share_what_they_read() {
 }
 
 #[test]
+fn environments_are_pictures_that_may_be_turned() {
+    let folder = tempfile::tempdir().unwrap();
+    let plane = |name: &str, value: f32| Channel { name: name.into(), samples: vec![value, 1.0, 2.0, 3.0] };
+    let write = |name: &str, red: f32| {
+        let channels = vec![plane("R", red), plane("G", 0.0), plane("B", 0.0)];
+        let picture = Picture { width: 2, height: 2, channels };
+        save(&picture, &folder.path().join(name), Preview::default()).unwrap();
+    };
+    write("sky.exr", 0.5);
+    write("hole.exr", -0.5);
+    let path = folder.path().join("scene.xml");
+    let read = |file: &str, more: &str| {
+        let name = format!("<string name='filename' value='{file}'/>");
+        fs::write(&path, scene(&format!("<emitter type='envmap'>{name}{more}</emitter>"))).unwrap();
+        load(&path, &LoadOptions::default())
+    };
+    let turned = "<transform name='to_world'><scale value='2'/><rotate y='1' angle='90'/></transform>";
+    let loaded = read("sky.exr", &format!("<float name='scale' value='3'/>{turned}")).unwrap();
+    let [Emitter::Envmap { picture, scale, to_world }] = &loaded.description.emitters[..] else {
+        panic!("{:?}", loaded.description.emitters)
+    };
+    assert_eq!((picture.width, *scale), (2, 3.0));
+    assert!((*to_world * glam::DVec3::Z - glam::DVec3::X).length() < 1e-12);
+    for (file, more, expected) in [
+        ("hole.exr", "", "R of pixel (0, 0) is -0.5: not a radiance"),
+        ("sky.exr", "<float name='scale' value='-1'/>", "`scale` must not be negative"),
+        ("sky.exr", "<float name='scale' value='2e38'/>", "R of pixel (0, 1) is 2"),
+        ("sky.exr", "<transform name='to_world'><scale x='2'/></transform>", "not stretched"),
+    ] {
+        let error = read(file, more).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+}
+
+#[test]
 fn legal_oddities_are_warnings() {
     let has = |text: &str, part: &str| {
         let found = warnings(text);
@@ -329,7 +365,8 @@ fn elements_and_types_that_are_wrong_are_refused() {
             "<bsdf type='thindielectric' id='x'/>",
             "3:13: the bsdf `thindielectric` is not supported yet | supported bsdfs are `diffuse`, `conductor`, ",
         ),
-        ("<emitter type='envmap'/>", "3:16: the emitter `envmap` is not supported yet | "),
+        ("<emitter type='sunsky'/>", "3:16: the emitter `sunsky` is not supported yet | "),
+        ("<emitter type='envmap'/>", "3:2: the emitter `envmap` needs `filename` | "),
         ("<shape kind='cube'/>", "3:2: `shape` needs the attribute `type` | "),
         ("<shape type='cube' tpye='x'/>", "3:20: `shape` has no attribute `tpye` | did you mean `type`?"),
         ("<shape type='cube'><ref id='no'/></shape>", "3:29: no object has the id `no` | give the object"),

@@ -1,6 +1,10 @@
 //! Emitters to lights.
 
-use crate::light::{Light, Spot};
+use glam::{DMat3, DVec3};
+
+use crate::geometry::Aabb;
+use crate::light::{Envmap, Light, LightChoice, Spot};
+use crate::picture::Picture;
 use crate::scene::Emitter;
 
 /// Lights without a surface, in the order of the description; area lights follow them.
@@ -24,6 +28,24 @@ pub(super) fn without_surface(emitters: &[Emitter]) -> Vec<Light> {
                 Light::Directional { towards: -direction.as_vec3(), irradiance: *irradiance }
             }
             Emitter::Constant { radiance } => Light::Constant { radiance: *radiance },
+            Emitter::Envmap { picture, scale, to_world } => Light::Envmap(envmap(picture, *scale, *to_world)),
         })
         .collect()
+}
+
+/// The choice among the lights of a scene with these bounds.
+pub(super) fn choice(lights: &[Light], bounds: Aabb) -> LightChoice {
+    let radius =
+        if bounds.min.cmple(bounds.max).all() { 0.5 * (bounds.max - bounds.min).length() } else { 1.0 };
+    let powers: Vec<f32> = lights.iter().map(|light| light.power(radius)).collect();
+    LightChoice::new(lights.iter().map(Light::glimpse).collect(), &powers)
+}
+
+fn envmap(picture: &Picture, scale: f32, to_world: DMat3) -> Envmap {
+    let planes = ["R", "G", "B"].map(|name| picture.plane(name).unwrap_or_default());
+    let texels = (0..picture.width as usize * picture.height as usize)
+        .map(|i| planes.map(|plane| scale * plane[i]))
+        .collect();
+    let axes = [to_world.x_axis, to_world.y_axis, to_world.z_axis].map(DVec3::as_vec3);
+    Envmap::new(texels, picture.width, axes)
 }

@@ -17,7 +17,8 @@ pub use surfaces::Surface;
 
 use crate::bvh::{Bvh, Child, Quality, Reference};
 use crate::camera::Camera;
-use crate::light::{Light, LightId};
+use crate::geometry::Aabb;
+use crate::light::{Light, LightChoice, LightId};
 use crate::material::MaterialTable;
 use crate::scene::{Film, Integrator, Projection, Sampler, SceneDescription, Sensor};
 use crate::texture::TextureTable;
@@ -32,6 +33,8 @@ pub struct Scene {
     pub(crate) materials: MaterialTable,
     pub(crate) textures: TextureTable,
     pub(crate) lights: Vec<Light>,
+    /// Which of them is sampled where one is.
+    pub(crate) light_choice: LightChoice,
     /// Lights that rays which leave the scene see.
     pub(crate) environments: Vec<LightId>,
     pub(crate) camera: Camera,
@@ -111,6 +114,9 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
     let triangles = surfaces.triangles.len() as u64 - degenerate;
     let quadrics = (surfaces.spheres.len() + surfaces.canonicals.len()) as u64;
 
+    let bounds = references.iter().fold(Aabb::EMPTY, |bounds, reference| bounds.union(reference.bounds));
+    let light_choice = lights::choice(&lights, bounds);
+
     let start = Instant::now();
     let bvh = Bvh::build_with(references, quality);
     let primitives = Primitives::new(bvh.slots(), |id| surfaces.primitive(id));
@@ -127,7 +133,7 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
         bvh_time,
         quality,
     };
-    let environments = (0..lights.len()).filter(|&i| lights[i].environment().is_some());
+    let environments = (0..lights.len()).filter(|&i| lights[i].is_environment());
     let environments = environments.map(|i| LightId(i as u32)).collect();
     Ok(Scene {
         primitives,
@@ -136,6 +142,7 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
         materials,
         textures,
         lights,
+        light_choice,
         environments,
         camera: camera(&description.sensor),
         film: description.sensor.film,

@@ -9,7 +9,7 @@ use std::f32::consts::PI;
 use glam::Vec3;
 
 use super::LightSample;
-use crate::geometry::{CanonicalKind, Sphere, Triangle, offset_origin};
+use crate::geometry::{Aabb, CanonicalKind, Sphere, Triangle, offset_origin};
 use crate::math::{Frame, sin_cos_turns, warp};
 use crate::simd::{Mask, Real, Vector3, vector3};
 
@@ -83,6 +83,24 @@ impl Emitting {
         }
     }
 
+    /// (middle, radius) of a ball that holds the shape.
+    pub(super) fn ball(&self) -> (Vec3, f32) {
+        match self {
+            Self::Sphere(sphere) => (sphere.center, sphere.radius),
+            Self::Triangles { triangles, .. } => {
+                let bounds = triangles.iter().fold(Aabb::EMPTY, |bounds, t| bounds.union(t.bounds()));
+                (0.5 * (bounds.min + bounds.max), 0.5 * (bounds.max - bounds.min).length())
+            }
+            Self::Canonical { kind, axes: [x, y, z], origin, .. } => {
+                let along = if *kind == CanonicalKind::Cylinder { *z } else { Vec3::ZERO };
+                (
+                    *origin + 0.5 * along,
+                    (x.length_squared().max(y.length_squared()) + 0.25 * along.length_squared()).sqrt(),
+                )
+            }
+        }
+    }
+
     /// A point and its normal, uniform by area.
     #[inline]
     fn sample_area<R: Real>(&self, (u, v): (R, R)) -> (Vector3<R>, Vector3<R>) {
@@ -130,6 +148,11 @@ impl Emitting {
 }
 
 impl AreaLight {
+    /// π A L, W.
+    pub(super) fn power(&self) -> Vec3 {
+        PI * self.shape.area() * self.radiance
+    }
+
     /// Draws a point of the light as seen from `from`.
     #[inline]
     pub fn sample<R: Real>(&self, from: Vector3<R>, u: (R, R)) -> LightSample<R> {

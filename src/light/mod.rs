@@ -4,10 +4,17 @@
 //! solid angle; a light without extent (point, spot, directional) has no density and can't be hit.
 
 mod area;
+mod choice;
+mod distribution;
+mod envmap;
 mod spot;
 
 pub use area::{AreaLight, Emitting, SurfacePoint};
+pub use choice::{Glimpse, LightChoice};
+pub use envmap::Envmap;
 pub use spot::Spot;
+
+use std::f32::consts::PI;
 
 use glam::Vec3;
 
@@ -47,6 +54,8 @@ pub enum Light {
         /// W/(m² sr).
         radiance: Vec3,
     },
+    /// A picture all around.
+    Envmap(Envmap),
     /// A shape.
     Area(AreaLight),
 }
@@ -85,35 +94,68 @@ impl Light {
                 pdf: R::zero(),
                 valid: R::Mask::splat(true),
             },
-            Self::Constant { radiance } => {
-                let pdf = warp::cone_pdf(R::splat(2.0));
-                LightSample {
-                    wi: warp::sphere(u, v),
-                    target: from,
-                    at_infinity: true,
-                    weight: Vector3::splat(*radiance).scale(R::one() / pdf),
-                    pdf,
-                    valid: R::Mask::splat(true),
-                }
-            }
+            Self::Constant { .. } => self.from_infinity(from, warp::sphere(u, v)),
+            Self::Envmap(map) => self.from_infinity(from, map.sample((u, v))),
             Self::Area(light) => light.sample(from, (u, v)),
         }
     }
 
-    /// Is it at infinity, seen by rays that leave the scene?
-    pub fn environment(&self) -> Option<Vec3> {
-        match self {
-            Self::Constant { radiance } => Some(*radiance),
-            _ => None,
+    /// A sample of the environment.
+    #[inline]
+    fn from_infinity<R: Real>(&self, from: Vector3<R>, wi: Vector3<R>) -> LightSample<R> {
+        let (radiance, pdf) = self.environment(wi);
+        LightSample {
+            wi,
+            target: from,
+            at_infinity: true,
+            weight: radiance.scale(R::one() / pdf),
+            pdf,
+            valid: pdf.gt(R::zero()),
         }
     }
 
-    /// Density per solid angle of a direction that leaves the scene.
+    /// Is it all around, seen by rays that leave the scene?
+    pub fn is_environment(&self) -> bool {
+        matches!(self, Self::Constant { .. } | Self::Envmap(_))
+    }
+
+    /// What rays that leave the scene along `wi` see, and the density per solid angle with which
+    /// [`sample`](Self::sample) draws that direction.
     #[inline]
-    pub fn environment_pdf<R: Real>(&self) -> R {
+    pub fn environment<R: Real>(&self, wi: Vector3<R>) -> (Vector3<R>, R) {
         match self {
-            Self::Constant { .. } => warp::cone_pdf(R::splat(2.0)),
-            _ => R::zero(),
+            Self::Constant { radiance } => (Vector3::splat(*radiance), warp::cone_pdf(R::splat(2.0))),
+            Self::Envmap(map) => map.arriving(wi),
+            _ => (Vector3::zero(), R::zero()),
+        }
+    }
+
+    /// Power in W, in the brightest band, for choosing among many. Of what comes from infinity, the part
+    /// that passes through a scene of this radius.
+    pub fn power(&self, scene_radius: f32) -> f32 {
+        let disk = PI * scene_radius * scene_radius;
+        let Glimpse { steady, intensity, .. } = self.glimpse();
+        (4.0 * disk * steady + 4.0 * PI * intensity).min(f32::MAX)
+    }
+
+    /// What the light is from afar, in the brightest band. Irradiance and intensity are means over all
+    /// sides.
+    pub fn glimpse(&self) -> Glimpse {
+        let steady = |flux: Vec3| Glimpse { steady: flux.max_element().min(f32::MAX), ..Glimpse::default() };
+        let point = |middle: Vec3, radius: f32, intensity: Vec3| {
+            let intensity = intensity.max_element().min(f32::MAX);
+            Glimpse { intensity, middle, radius, steady: 0.0 }
+        };
+        match self {
+            Self::Point { position, intensity } => point(*position, 0.0, *intensity),
+            Self::Spot(spot) => point(spot.position, 0.0, spot.intensity_on_axis()),
+            Self::Directional { irradiance, .. } => steady(0.25 * *irradiance),
+            Self::Constant { radiance } => steady(PI * *radiance),
+            Self::Envmap(map) => steady(0.25 * map.flux()),
+            Self::Area(light) => {
+                let (middle, radius) = light.shape.ball();
+                point(middle, radius, light.power() / (4.0 * PI))
+            }
         }
     }
 }

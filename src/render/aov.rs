@@ -1,6 +1,6 @@
 //! What the camera sees, in place of light: arbitrary output variables, averaged over the pixel.
 
-use super::integrator::{Integrator, Outgoing, Path};
+use super::integrator::{Integrator, Line, Outgoing, Path};
 use super::vertex::Vertex;
 use crate::compile::Scene;
 use crate::scene::{Aov, AovChannel};
@@ -29,7 +29,7 @@ impl Integrator for AovIntegrator {
         0
     }
 
-    fn miss<R: Real>(&self, _: &Scene, _: &Path<R>, _: Vector3<R>, _: &mut impl Outgoing<R>) {}
+    fn miss<R: Real>(&self, _: &Scene, _: &Path<R>, _: Line<R>, _: &mut impl Outgoing<R>) {}
 
     fn shade<R: Real>(&self, _: &Scene, vertex: &Vertex<'_, R>, out: &mut impl Outgoing<R>) {
         let surface = &vertex.surface;

@@ -100,12 +100,12 @@ fn vertex<I: Integrator>(
     let shadows = vec![(None, Vector3::zero()); integrator.shadow_rays(scene)];
     let mut said = Said { added: vec![0.0; channels], shadows, next: [None; 2] };
     let hit = scene.closest_hit(ray, traversal);
+    let line = (ray.org.into(), ray.dir.into());
     if hit.primitive == PrimitiveId::NONE {
-        integrator.miss(scene, path, ray.dir.into(), &mut said);
+        integrator.miss(scene, path, line, &mut said);
         return said;
     }
     let material = scene.material(hit.primitive);
-    let line = (ray.org.into(), ray.dir.into());
     let vertex = Vertex::new(scene, *path, line, (hit.t, hit.u, hit.v), hit.primitive.0, material);
     integrator.shade(scene, &vertex, &mut said);
     for (segment, _) in &mut said.shadows {

@@ -24,6 +24,26 @@ pub(super) struct Vertex<'s, R: Real> {
 /// A path that goes on: in which lanes, along which ray (org, dir), and what it is worth.
 pub(super) type Continuation<R> = (<R as Real>::Mask, (Vector3<R>, Vector3<R>), Path<R>);
 
+/// Which lights each vertex samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sampled {
+    /// Every one.
+    All,
+    /// One, by the scene's choice.
+    One,
+}
+
+impl Sampled {
+    /// Of a light, at the vertices `from`.
+    #[inline]
+    fn probability<R: Real>(self, scene: &Scene, light: usize, from: Vector3<R>) -> R {
+        match self {
+            Self::All => R::one(),
+            Self::One => scene.light_choice.probability(light, from),
+        }
+    }
+}
+
 /// Light from one emitter, to be added if it is not blocked.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Connection<R: Real> {
@@ -97,9 +117,9 @@ impl<'s, R: Real> Vertex<'s, R> {
     }
 
     /// Light that the surface itself sends along the ray, times `beta`. Where the ray was drawn with a
-    /// density, it is weighted against light sampling, which picks a light with probability `pick`.
+    /// density, it is weighted against light sampling.
     #[inline]
-    pub(super) fn emitted(&self, scene: &Scene, pick: f32) -> Vector3<R> {
+    pub(super) fn emitted(&self, scene: &Scene, sampled: Sampled) -> Vector3<R> {
         let mut total = Vector3::zero();
         for (light, lanes) in distinct::<R>(self.surface.light) {
             let Some(Light::Area(area)) = scene.lights.get(light as usize) else {
@@ -107,7 +127,8 @@ impl<'s, R: Real> Vertex<'s, R> {
             };
             let lanes = lanes & self.cos_o.gt(R::zero());
             let point = SurfacePoint { position: self.surface.position, n_g: self.surface.n_g };
-            let light_pdf = area.pdf(self.from, &point) * R::splat(pick);
+            let light_pdf =
+                area.pdf(self.from, &point) * sampled.probability(scene, light as usize, self.from);
             let weight = mis_weight(self.path.pdf, light_pdf);
             total = total + (self.path.beta * Vector3::splat(area.radiance)).scale(weight).only(lanes);
         }
@@ -117,17 +138,17 @@ impl<'s, R: Real> Vertex<'s, R> {
     /// Light from one emitter, with the probability that it was picked. `mis` weighs it against BSDF
     /// sampling.
     #[inline]
-    pub(super) fn connect(&self, light: &Light, pick: f32, mis: bool, u: (R, R)) -> Connection<R> {
+    pub(super) fn connect(&self, light: &Light, pick: R, mis: bool, u: (R, R)) -> Connection<R> {
         let sample = light.sample(self.surface.position, u);
         let (f, bsdf_pdf) = self.eval(sample.wi);
-        let light_pdf = sample.pdf * R::splat(pick);
+        let light_pdf = sample.pdf * pick;
         let can_be_hit = sample.pdf.gt(R::zero());
         let weight = if mis {
             R::select(can_be_hit, power_heuristic(light_pdf, bsdf_pdf), R::one())
         } else {
             R::one()
         };
-        let radiance = (self.path.beta * f * sample.weight).scale(weight * R::splat(1.0 / pick));
+        let radiance = (self.path.beta * f * sample.weight).scale(weight * (R::one() / pick));
         let (org, _) = self.leave(sample.wi);
         let (dir, t_far) = if sample.at_infinity {
             (sample.wi, R::splat(f32::INFINITY))
@@ -154,23 +175,21 @@ impl<'s, R: Real> Vertex<'s, R> {
             return;
         }
         for (index, light) in scene.lights.iter().enumerate() {
-            shadow(index, self.connect(light, 1.0, mis, random(index as u32)));
+            shadow(index, self.connect(light, R::one(), mis, random(index as u32)));
         }
     }
 
-    /// Light from one emitter a lane, picked uniformly.
+    /// Light from one emitter a lane, chosen by [`LightChoice`](crate::light::LightChoice).
     #[inline]
     pub(super) fn connect_one(&self, scene: &Scene, (u, v): (R, R)) -> Option<Connection<R>> {
-        let count = scene.lights.len();
-        if count == 0 || !self.appearance.is_smooth() {
+        if scene.lights.is_empty() || !self.appearance.is_smooth() {
             return None;
         }
-        let scaled = u * R::splat(count as f32);
-        let floor = scaled.floor().min(R::splat(count as f32 - 1.0));
-        let rest = (scaled - floor).min(R::splat(1.0 - f32::EPSILON / 2.0));
-        let pick = 1.0 / count as f32;
+        let at = self.surface.position;
+        let (chosen, rest) = scene.light_choice.choose(u, at);
         let mut all: Option<Connection<R>> = None;
-        for (index, lanes) in distinct::<R>(floor.to_int()) {
+        for (index, lanes) in distinct::<R>(chosen) {
+            let pick = scene.light_choice.probability(index as usize, at);
             let one = self.connect(&scene.lights[index as usize], pick, true, (rest, v));
             all = Some(match all {
                 None => Connection { lanes: one.lanes & lanes, ..one },
@@ -189,17 +208,20 @@ impl<'s, R: Real> Vertex<'s, R> {
     }
 }
 
-/// Light from infinity along rays that leave the scene, times `beta`; weighted as by
+/// Light from infinity along rays (org, dir) that leave the scene, times `beta`; weighted as by
 /// [`Vertex::emitted`].
 #[inline]
-pub(super) fn environment<R: Real>(scene: &Scene, path: &Path<R>, pick: f32) -> Vector3<R> {
+pub(super) fn environment<R: Real>(
+    scene: &Scene,
+    path: &Path<R>,
+    (from, dir): (Vector3<R>, Vector3<R>),
+    sampled: Sampled,
+) -> Vector3<R> {
     let mut total = Vector3::zero();
     for &LightId(index) in &scene.environments {
-        let light = &scene.lights[index as usize];
-        if let Some(radiance) = light.environment() {
-            let weight = mis_weight(path.pdf, light.environment_pdf::<R>() * R::splat(pick));
-            total = total + (path.beta * Vector3::splat(radiance)).scale(weight);
-        }
+        let (radiance, pdf) = scene.lights[index as usize].environment(dir);
+        let weight = mis_weight(path.pdf, pdf * sampled.probability(scene, index as usize, from));
+        total = total + (path.beta * radiance).scale(weight);
     }
     total
 }

@@ -168,7 +168,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             let path = paths.path(&at, depth, sample);
             let (org, dir) = (gather3(&paths.rays.org, &at), gather3(&paths.rays.dir, &at));
             if key == miss {
-                integrator.miss(scene, &path, dir, &mut group);
+                integrator.miss(scene, &path, (org, dir), &mut group);
                 return;
             }
             let tuv = (gather(&hits.t, &at), gather(&hits.u, &at), gather(&hits.v, &at));

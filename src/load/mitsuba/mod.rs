@@ -74,9 +74,10 @@ impl Builder {
         // An `area` emitter that shapes refer to may be defined here without shining here.
         let is_definition = |emitter: &Object| emitter.plugin() == "area" && emitter.is_referenced();
         for object in scene.children(Class::Emitter).into_iter().filter(|emitter| !is_definition(emitter)) {
-            let emitter = emitter::build(object)?;
-            let is_constant = |emitter: &Emitter| matches!(emitter, Emitter::Constant { .. });
-            if is_constant(&emitter) && self.description.emitters.iter().any(is_constant) {
+            let emitter = emitter::build(object, &mut self.files)?;
+            let is_environment =
+                |emitter: &Emitter| matches!(emitter, Emitter::Constant { .. } | Emitter::Envmap { .. });
+            if is_environment(&emitter) && self.description.emitters.iter().any(is_environment) {
                 return Err(object.error("a scene has one environment, not several").label("the second one"));
             }
             self.description.emitters.push(emitter);

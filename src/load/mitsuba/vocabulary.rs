@@ -65,7 +65,7 @@ impl Class {
                 "merl",
             ],
             Self::Texture => &["bitmap", "checkerboard"],
-            Self::Emitter => &["area", "point", "spot", "directional", "constant"],
+            Self::Emitter => &["area", "point", "spot", "directional", "constant", "envmap"],
             Self::Shape => &["sphere", "rectangle", "cube", "disk", "cylinder", "obj", "ply"],
         }
     }
@@ -104,9 +104,7 @@ impl Class {
                 "pplastic",
             ],
             Self::Texture => &["mesh_attribute", "volume"],
-            Self::Emitter => {
-                &["envmap", "sunsky", "projector", "directionalarea", "volumelight", "sky", "sun"]
-            }
+            Self::Emitter => &["sunsky", "projector", "directionalarea", "volumelight", "sky", "sun"],
             Self::Shape => &[
                 "serialized",
                 "blender",
