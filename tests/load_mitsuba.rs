@@ -217,6 +217,24 @@ fn integrators_have_their_parameters() {
             Integrator::Path { max_depth: None, rr_depth: 5, hide_emitters: false },
         ),
         ("<integrator type='whitted'/>", Integrator::Whitted { max_depth: 10 }),
+        ("<integrator type='ao'/>", Integrator::AmbientOcclusion { distance: f32::INFINITY }),
+        (
+            "<integrator type='ao'><float name='distance' value='2.5'/></integrator>",
+            Integrator::AmbientOcclusion { distance: 2.5 },
+        ),
+        (
+            "<integrator type='irradiance'><integer name='max_depth' value='3'/></integrator>",
+            Integrator::Irradiance { max_depth: Some(3), rr_depth: 5 },
+        ),
+        (
+            "<integrator type='aov'><string name='aovs' value='a:directional_albedo,m:material_id'/></integrator>",
+            Integrator::Aov {
+                channels: vec![
+                    AovChannel { name: "a".into(), kind: Aov::DirectionalAlbedo },
+                    AovChannel { name: "m".into(), kind: Aov::MaterialId },
+                ],
+            },
+        ),
         (
             "<integrator type='direct'><boolean name='hide_emitters' value='true'/></integrator>",
             Integrator::Direct { hide_emitters: true },
@@ -300,8 +318,12 @@ fn environments_are_pictures_that_may_be_turned() {
     };
     assert_eq!((picture.width, *scale), (2, 3.0));
     assert!((*to_world * glam::DVec3::Z - glam::DVec3::X).length() < 1e-12);
+    let holed = read("hole.exr", "").unwrap().warnings;
+    assert!(
+        holed.iter().any(|w| w.message == "negative values in the picture (1) are taken as 0"),
+        "{holed:?}"
+    );
     for (file, more, expected) in [
-        ("hole.exr", "", "R of pixel (0, 0) is -0.5: not a radiance"),
         ("sky.exr", "<float name='scale' value='-1'/>", "`scale` must not be negative"),
         ("sky.exr", "<float name='scale' value='2e38'/>", "R of pixel (0, 1) is 2"),
         ("sky.exr", "<transform name='to_world'><scale x='2'/></transform>", "not stretched"),
@@ -309,6 +331,27 @@ fn environments_are_pictures_that_may_be_turned() {
         let error = read(file, more).unwrap_err().to_string();
         assert!(error.contains(expected), "{error}");
     }
+}
+
+#[test]
+fn nine_coefficients_are_a_light() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows: Vec<String> = (0..9).map(|i| format!("[{i}, 0.5, -1]")).collect();
+    fs::write(folder.path().join("sky.json"), format!("{{\"coefficients\": [{}]}}", rows.join(","))).unwrap();
+    fs::write(folder.path().join("bad.json"), "{\"coefficients\": [[1, 2, 3]]}").unwrap();
+    let path = folder.path().join("scene.xml");
+    let read = |inside: &str| {
+        fs::write(&path, scene(&format!("<emitter type='shlight'>{inside}</emitter>"))).unwrap();
+        load(&path, &LoadOptions::default())
+    };
+    let inside = "<string name='filename' value='sky.json'/><float name='scale' value='2'/>";
+    let loaded = read(inside).unwrap();
+    let [Emitter::Sh { coefficients, .. }] = &loaded.description.emitters[..] else {
+        panic!("{:?}", loaded.description.emitters)
+    };
+    assert_eq!(coefficients[8].to_array(), [16.0, 1.0, -2.0]);
+    let error = read("<string name='filename' value='bad.json'/>").unwrap_err();
+    assert!(error.to_string().contains("the coefficients can't be used: "), "{error}");
 }
 
 #[test]

@@ -5,16 +5,19 @@
 mod bench;
 mod brdf;
 mod console;
+mod envmap;
 pub mod exit;
 mod failure;
 mod info;
 mod memory;
+mod meter;
 mod output;
 mod overrides;
 mod progress;
 mod quality;
 mod quantity;
 mod render;
+mod replay;
 mod report;
 mod source;
 mod threads;
@@ -37,6 +40,8 @@ Examples:
   packlight info scenes/cornell.xml --json
   packlight bench gen:terrain:1M --threads 1
   packlight brdf roughconductor:alpha=0.3,material=Au -o lobe.svg
+  packlight meter scenes/cornell.xml --at 0,0,0 --normal 0,1,0
+  packlight envmap sky.exr --sh -o sky.json
 
 Exit codes:
   0  done
@@ -62,6 +67,10 @@ enum Command {
     Bench(bench::Arguments),
     /// Plot a reflection model, or prove that it is one
     Brdf(Box<brdf::Arguments>),
+    /// Measure the irradiance at a point
+    Meter(meter::Arguments),
+    /// Reduce an environment to nine coefficients
+    Envmap(envmap::Arguments),
 }
 
 /// Reads the command line, does what it says, and returns one of the codes in [`exit`].
@@ -73,6 +82,8 @@ pub fn run() -> ExitCode {
         Command::Info(arguments) => info::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Brdf(arguments) => brdf::run(&arguments),
+        Command::Meter(arguments) => meter::run(&arguments),
+        Command::Envmap(arguments) => envmap::run(&arguments),
     });
     match done {
         Ok(()) => ExitCode::from(exit::SUCCESS),

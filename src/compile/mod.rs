@@ -12,8 +12,11 @@ mod surfaces;
 
 use std::time::{Duration, Instant};
 
+pub use lights::envmap;
 pub use primitives::Primitives;
 pub use surfaces::Surface;
+
+use glam::Vec3;
 
 use crate::bvh::{Bvh, Child, Quality, Reference};
 use crate::camera::Camera;
@@ -37,6 +40,8 @@ pub struct Scene {
     pub(crate) light_choice: LightChoice,
     /// Lights that rays which leave the scene see.
     pub(crate) environments: Vec<LightId>,
+    /// Size of the bounds of everything that can be hit.
+    extent: Vec3,
     pub(crate) camera: Camera,
     /// Size of the picture.
     pub film: Film,
@@ -115,7 +120,8 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
     let quadrics = (surfaces.spheres.len() + surfaces.canonicals.len()) as u64;
 
     let bounds = references.iter().fold(Aabb::EMPTY, |bounds, reference| bounds.union(reference.bounds));
-    let light_choice = lights::choice(&lights, bounds);
+    let extent = (bounds.max - bounds.min).max(Vec3::ZERO);
+    let light_choice = lights::choice(&lights, 0.5 * extent.length());
 
     let start = Instant::now();
     let bvh = Bvh::build_with(references, quality);
@@ -144,6 +150,7 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
         lights,
         light_choice,
         environments,
+        extent,
         camera: camera(&description.sensor),
         film: description.sensor.film,
         sampler: description.sensor.sampler,

@@ -21,8 +21,11 @@ use super::distribution::{find, linear, push_sums};
 use crate::math::{Frame, INV_TWO_PI, atan2, sin_cos_turns};
 use crate::simd::{Bits, Real, Vector3, vector3};
 
+mod integral;
 #[cfg(test)]
 mod tests;
+
+pub use integral::{ShCoefficients, sh_irradiance};
 
 /// An environment map, ready to be looked up and sampled.
 #[derive(Clone, Debug)]
@@ -205,11 +208,6 @@ impl Envmap {
         let turns = (R::from_int(column) + R::splat(0.5) + x) * R::splat(1.0 / self.width as f32);
         let (sin_phi, cos_phi) = sin_cos_turns(turns);
         self.frame().to_world(vector3(sin * sin_phi, R::select(is_upper, cos, -cos), -sin * cos_phi))
-    }
-
-    /// The light's own radiance at texel positions, for integrals: (columns, rows, texels).
-    pub fn texels(&self) -> (usize, usize, &[[f32; 3]]) {
-        (self.width, self.height, &self.texels)
     }
 }
 

@@ -7,11 +7,13 @@ mod area;
 mod choice;
 mod distribution;
 mod envmap;
+mod sh;
 mod spot;
 
 pub use area::{AreaLight, Emitting, SurfacePoint};
 pub use choice::{Glimpse, LightChoice};
-pub use envmap::Envmap;
+pub use envmap::{Envmap, ShCoefficients, sh_irradiance};
+pub use sh::ShLight;
 pub use spot::Spot;
 
 use std::f32::consts::PI;
@@ -56,8 +58,30 @@ pub enum Light {
     },
     /// A picture all around.
     Envmap(Envmap),
+    /// Nine coefficients, all around, without shadows.
+    Sh(ShLight),
     /// A shape.
     Area(AreaLight),
+}
+
+/// Points that receive light.
+#[derive(Clone, Copy, Debug)]
+pub struct Receiver<R> {
+    /// World space.
+    pub position: Vector3<R>,
+    /// Unit length, on the side that is lit.
+    pub n: Vector3<R>,
+}
+
+/// How far a shadow ray has to go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// To the target.
+    Target,
+    /// Out of the scene.
+    Infinity,
+    /// Nowhere: the light has no shadows.
+    Unhindered,
 }
 
 /// Light that arrives at some points, one direction each.
@@ -65,10 +89,10 @@ pub enum Light {
 pub struct LightSample<R: Real> {
     /// Towards the light; unit length.
     pub wi: Vector3<R>,
-    /// The point on the light, moved off its surface towards the receiver; of no meaning at infinity.
+    /// The point on the light, moved off its surface towards the receiver, if that is where it is.
     pub target: Vector3<R>,
-    /// Lights at infinity have no target.
-    pub at_infinity: bool,
+    /// Where the light is.
+    pub reach: Reach,
     /// Radiance / pdf, or intensity/d², or irradiance.
     pub weight: Vector3<R>,
     /// Density per solid angle; 0 for lights that can't be hit by chance.
@@ -78,9 +102,10 @@ pub struct LightSample<R: Real> {
 }
 
 impl Light {
-    /// Draws a direction for light that arrives at `from`.
+    /// Draws a direction for light that arrives.
     #[inline]
-    pub fn sample<R: Real>(&self, from: Vector3<R>, (u, v): (R, R)) -> LightSample<R> {
+    pub fn sample<R: Real>(&self, receiver: &Receiver<R>, (u, v): (R, R)) -> LightSample<R> {
+        let from = receiver.position;
         match self {
             Self::Point { position, intensity } => {
                 from_point(from, *position, |_| Vector3::splat(*intensity))
@@ -89,13 +114,21 @@ impl Light {
             Self::Directional { towards, irradiance } => LightSample {
                 wi: Vector3::splat(*towards),
                 target: from,
-                at_infinity: true,
+                reach: Reach::Infinity,
                 weight: Vector3::splat(*irradiance),
                 pdf: R::zero(),
                 valid: R::Mask::splat(true),
             },
             Self::Constant { .. } => self.from_infinity(from, warp::sphere(u, v)),
             Self::Envmap(map) => self.from_infinity(from, map.sample((u, v))),
+            Self::Sh(light) => LightSample {
+                wi: receiver.n,
+                target: from,
+                reach: Reach::Unhindered,
+                weight: light.irradiance(receiver.n),
+                pdf: R::zero(),
+                valid: R::Mask::splat(true),
+            },
             Self::Area(light) => light.sample(from, (u, v)),
         }
     }
@@ -107,7 +140,7 @@ impl Light {
         LightSample {
             wi,
             target: from,
-            at_infinity: true,
+            reach: Reach::Infinity,
             weight: radiance.scale(R::one() / pdf),
             pdf,
             valid: pdf.gt(R::zero()),
@@ -116,7 +149,7 @@ impl Light {
 
     /// Is it all around, seen by rays that leave the scene?
     pub fn is_environment(&self) -> bool {
-        matches!(self, Self::Constant { .. } | Self::Envmap(_))
+        matches!(self, Self::Constant { .. } | Self::Envmap(_) | Self::Sh(_))
     }
 
     /// What rays that leave the scene along `wi` see, and the density per solid angle with which
@@ -126,6 +159,8 @@ impl Light {
         match self {
             Self::Constant { radiance } => (Vector3::splat(*radiance), warp::cone_pdf(R::splat(2.0))),
             Self::Envmap(map) => map.arriving(wi),
+            // Whoever samples lights has it all, whatever the density: only mirrors and eyes see it.
+            Self::Sh(light) => (light.radiance(wi), R::splat(f32::INFINITY)),
             _ => (Vector3::zero(), R::zero()),
         }
     }
@@ -152,6 +187,7 @@ impl Light {
             Self::Directional { irradiance, .. } => steady(0.25 * *irradiance),
             Self::Constant { radiance } => steady(PI * *radiance),
             Self::Envmap(map) => steady(0.25 * map.flux()),
+            Self::Sh(light) => steady(0.25 * light.flux()),
             Self::Area(light) => {
                 let (middle, radius) = light.shape.ball();
                 point(middle, radius, light.power() / (4.0 * PI))
@@ -174,7 +210,7 @@ fn from_point<R: Real>(
     LightSample {
         wi,
         target,
-        at_infinity: false,
+        reach: Reach::Target,
         weight: intensity(wi).scale(R::one() / squared),
         pdf: R::zero(),
         valid: squared.gt(R::zero()),

@@ -10,6 +10,7 @@ mod obj;
 mod obj_materials;
 mod obj_text;
 mod ply;
+pub mod sh;
 mod spectrum;
 mod text;
 

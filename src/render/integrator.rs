@@ -86,6 +86,14 @@ pub(super) trait Integrator: Sync {
         1
     }
 
+    /// Do paths begin elsewhere than at the camera, in [`begin`](Self::begin)?
+    fn begins(&self) -> bool {
+        false
+    }
+
+    /// Paths that begin elsewhere, at depth 0.
+    fn begin<R: Real>(&self, _: &Scene, _: &Path<R>, _: &mut impl Outgoing<R>) {}
+
     /// Rays that leave the scene.
     fn miss<R: Real>(&self, scene: &Scene, path: &Path<R>, ray: Line<R>, out: &mut impl Outgoing<R>);
 

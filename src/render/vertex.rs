@@ -1,11 +1,11 @@
 //! A vertex of a path: a surface, its material there, and the three things that light does at it.
 
-use super::integrator::Path;
+use super::departure::{Connection, Departure, distinct};
+use super::integrator::{Line, Path};
 use crate::compile::{Scene, Surface};
-use crate::geometry::{REACH, offset_origin};
 use crate::light::{Light, LightId, SurfacePoint, power_heuristic};
 use crate::material::{Appearance, MaterialId, Point};
-use crate::simd::{Bits, Mask, Real, Vector3};
+use crate::simd::{Real, Vector3};
 
 /// Points where paths have arrived, all of one material.
 #[derive(Clone, Debug)]
@@ -13,8 +13,13 @@ pub(super) struct Vertex<'s, R: Real> {
     pub(super) path: Path<R>,
     /// Origin of the ray that arrived.
     pub(super) from: Vector3<R>,
+    /// Its direction.
+    pub(super) dir: Vector3<R>,
     /// Its parameter.
     pub(super) t: R,
+    pub(super) material: MaterialId,
+    /// [`PrimitiveId`](crate::geometry::PrimitiveId)s.
+    pub(super) primitive: R::Bits,
     pub(super) surface: Surface<R>,
     /// cos θ_o as the surface stores its normal.
     cos_o: R,
@@ -44,15 +49,6 @@ impl Sampled {
     }
 }
 
-/// Light from one emitter, to be added if it is not blocked.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Connection<R: Real> {
-    pub(super) lanes: R::Mask,
-    /// (org, dir, t_far).
-    pub(super) ray: (Vector3<R>, Vector3<R>, R),
-    pub(super) radiance: Vector3<R>,
-}
-
 impl<'s, R: Real> Vertex<'s, R> {
     /// The vertices where rays (org, dir) met `primitive` at (t, u, v).
     #[inline]
@@ -73,20 +69,28 @@ impl<'s, R: Real> Vertex<'s, R> {
         };
         let point = Point { wo, uv: surface.uv, tangents };
         let appearance = scene.materials.appearance(material, &scene.textures, &point);
-        Self { path, from: org, t, surface, cos_o: wo.z, appearance }
+        Self { path, from: org, dir, t, material, primitive, surface, cos_o: wo.z, appearance }
     }
 
-    /// f |cos θ_i| for a world direction, and the density with which it is sampled.
+    /// β f |cos θ_i| for a world direction, and the density with which it is sampled.
     #[inline]
-    fn eval(&self, wi: Vector3<R>) -> (Vector3<R>, R) {
-        self.appearance.eval(self.surface.frame.to_local(wi))
+    fn worth(&self, wi: Vector3<R>) -> (Vector3<R>, R) {
+        let (f, pdf) = self.appearance.eval(self.surface.frame.to_local(wi));
+        (self.path.beta * f, pdf)
+    }
+
+    /// Where rays leave.
+    #[inline]
+    pub(super) fn departure(&self) -> Departure<R> {
+        let Surface { position, extent, n_g, ref frame, .. } = self.surface;
+        let n = Vector3::select(self.cos_o.lt(R::zero()), -frame.n, frame.n);
+        Departure { position, extent, n_g, n }
     }
 
     /// The ray from the surface along a world direction.
     #[inline]
-    fn leave(&self, dir: Vector3<R>) -> (Vector3<R>, Vector3<R>) {
-        let surface = &self.surface;
-        (offset_origin(surface.position, surface.extent, surface.n_g, dir), dir)
+    fn leave(&self, dir: Vector3<R>) -> Line<R> {
+        self.departure().leave(dir)
     }
 
     /// A BSDF sample as the ray that goes on: (lanes, ray, path).
@@ -103,6 +107,13 @@ impl<'s, R: Real> Vertex<'s, R> {
         };
         let lanes = sample.valid & beta.max_element().gt(R::zero());
         (lanes, self.leave(self.surface.frame.to_world(sample.wi)), path)
+    }
+
+    /// What a BSDF sample weighs: on average the directional albedo, ∫ f |cos θ_i| dω.
+    #[inline]
+    pub(super) fn albedo(&self, lobe: R, u: (R, R)) -> Vector3<R> {
+        let sample = self.appearance.sample(lobe, u);
+        sample.weight.only(sample.valid)
     }
 
     /// The delta lobes as rays that go on: reflection, refraction.
@@ -135,33 +146,6 @@ impl<'s, R: Real> Vertex<'s, R> {
         total
     }
 
-    /// Light from one emitter, with the probability that it was picked. `mis` weighs it against BSDF
-    /// sampling.
-    #[inline]
-    pub(super) fn connect(&self, light: &Light, pick: R, mis: bool, u: (R, R)) -> Connection<R> {
-        let sample = light.sample(self.surface.position, u);
-        let (f, bsdf_pdf) = self.eval(sample.wi);
-        let light_pdf = sample.pdf * pick;
-        let can_be_hit = sample.pdf.gt(R::zero());
-        let weight = if mis {
-            R::select(can_be_hit, power_heuristic(light_pdf, bsdf_pdf), R::one())
-        } else {
-            R::one()
-        };
-        let radiance = (self.path.beta * f * sample.weight).scale(weight * (R::one() / pick));
-        let (org, _) = self.leave(sample.wi);
-        let (dir, t_far) = if sample.at_infinity {
-            (sample.wi, R::splat(f32::INFINITY))
-        } else {
-            (sample.target - org, R::splat(REACH))
-        };
-        Connection {
-            lanes: sample.valid & radiance.max_element().gt(R::zero()),
-            ray: (org, dir, t_far),
-            radiance,
-        }
-    }
-
     /// Light from all emitters, one connection each: `connect` for those that can contribute.
     #[inline]
     pub(super) fn connect_all(
@@ -174,37 +158,20 @@ impl<'s, R: Real> Vertex<'s, R> {
         if !self.appearance.is_smooth() {
             return;
         }
+        let departure = self.departure();
         for (index, light) in scene.lights.iter().enumerate() {
-            shadow(index, self.connect(light, R::one(), mis, random(index as u32)));
+            let u = random(index as u32);
+            shadow(index, departure.connect(light, R::one(), mis, u, &|wi| self.worth(wi)));
         }
     }
 
-    /// Light from one emitter a lane, chosen by [`LightChoice`](crate::light::LightChoice).
+    /// Light from one emitter a lane.
     #[inline]
-    pub(super) fn connect_one(&self, scene: &Scene, (u, v): (R, R)) -> Option<Connection<R>> {
-        if scene.lights.is_empty() || !self.appearance.is_smooth() {
-            return None;
+    pub(super) fn connect_one(&self, scene: &Scene, u: (R, R)) -> Option<Connection<R>> {
+        match self.appearance.is_smooth() {
+            true => self.departure().connect_one(scene, u, &|wi| self.worth(wi)),
+            false => None,
         }
-        let at = self.surface.position;
-        let (chosen, rest) = scene.light_choice.choose(u, at);
-        let mut all: Option<Connection<R>> = None;
-        for (index, lanes) in distinct::<R>(chosen) {
-            let pick = scene.light_choice.probability(index as usize, at);
-            let one = self.connect(&scene.lights[index as usize], pick, true, (rest, v));
-            all = Some(match all {
-                None => Connection { lanes: one.lanes & lanes, ..one },
-                Some(all) => Connection {
-                    lanes: (all.lanes & !lanes) | (one.lanes & lanes),
-                    ray: (
-                        Vector3::select(lanes, one.ray.0, all.ray.0),
-                        Vector3::select(lanes, one.ray.1, all.ray.1),
-                        R::select(lanes, one.ray.2, all.ray.2),
-                    ),
-                    radiance: Vector3::select(lanes, one.radiance, all.radiance),
-                },
-            });
-        }
-        all
     }
 }
 
@@ -231,19 +198,4 @@ pub(super) fn environment<R: Real>(
 fn mis_weight<R: Real>(pdf: R, light_pdf: R) -> R {
     let only_way = pdf.equal(R::splat(f32::INFINITY));
     R::select(only_way, R::one(), power_heuristic(pdf, light_pdf))
-}
-
-/// The different values among lanes, each with its lanes.
-#[inline]
-fn distinct<R: Real>(values: R::Bits) -> impl Iterator<Item = (u32, R::Mask)> {
-    let mut left = (1u32 << R::LANES) - 1;
-    std::iter::from_fn(move || {
-        if left == 0 {
-            return None;
-        }
-        let value = values.lane(left.trailing_zeros() as usize);
-        let lanes = values.equal(R::Bits::splat(value));
-        left &= !lanes.to_bitmask();
-        Some((value, lanes))
-    })
 }

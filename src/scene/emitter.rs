@@ -46,10 +46,17 @@ pub enum Emitter {
     /// A picture all around: row 0 at local +y, columns from −z over +x, rows aligned to the poles,
     /// bilinear.
     Envmap {
-        /// `R G B`, W/(m² sr), not negative.
+        /// `R G B`, W/(m² sr), finite; what is negative is taken as 0.
         picture: Arc<Picture>,
         /// Radiance is the picture's times this.
         scale: f32,
+        /// Turns, and perhaps mirrors: orthonormal columns.
+        to_world: DMat3,
+    },
+    /// Light from all around, without shadows, in nine spherical harmonics about local axes.
+    Sh {
+        /// W/(m² sr), by l, then m.
+        coefficients: [Rgb; 9],
         /// Turns, and perhaps mirrors: orthonormal columns.
         to_world: DMat3,
     },

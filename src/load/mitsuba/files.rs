@@ -81,7 +81,8 @@ impl Files {
     }
 }
 
-fn existing_file(object: Object) -> Result<PathBuf, LoadError> {
+/// The file that the `filename` of an object names.
+pub(super) fn existing_file(object: Object) -> Result<PathBuf, LoadError> {
     let name = object
         .string("filename")?
         .ok_or_else(|| object.missing("filename", "<string name=\"filename\" value=\"…\"/>"))?;

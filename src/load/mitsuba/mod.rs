@@ -75,8 +75,9 @@ impl Builder {
         let is_definition = |emitter: &Object| emitter.plugin() == "area" && emitter.is_referenced();
         for object in scene.children(Class::Emitter).into_iter().filter(|emitter| !is_definition(emitter)) {
             let emitter = emitter::build(object, &mut self.files)?;
-            let is_environment =
-                |emitter: &Emitter| matches!(emitter, Emitter::Constant { .. } | Emitter::Envmap { .. });
+            let is_environment = |emitter: &Emitter| {
+                matches!(emitter, Emitter::Constant { .. } | Emitter::Envmap { .. } | Emitter::Sh { .. })
+            };
             if is_environment(&emitter) && self.description.emitters.iter().any(is_environment) {
                 return Err(object.error("a scene has one environment, not several").label("the second one"));
             }

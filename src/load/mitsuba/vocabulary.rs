@@ -40,7 +40,7 @@ impl Class {
     pub(super) fn supported(self) -> &'static [&'static str] {
         match self {
             Self::Scene => &[],
-            Self::Integrator => &["path", "direct", "aov", "whitted"],
+            Self::Integrator => &["path", "direct", "aov", "whitted", "ao", "irradiance"],
             Self::Sensor => &["perspective", "orthographic"],
             Self::Sampler => &["independent", "stratified", "multijitter", "orthogonal", "ldsampler"],
             Self::Film => &["hdrfilm"],
@@ -65,7 +65,7 @@ impl Class {
                 "merl",
             ],
             Self::Texture => &["bitmap", "checkerboard"],
-            Self::Emitter => &["area", "point", "spot", "directional", "constant", "envmap"],
+            Self::Emitter => &["area", "point", "spot", "directional", "constant", "envmap", "shlight"],
             Self::Shape => &["sphere", "rectangle", "cube", "disk", "cylinder", "obj", "ply"],
         }
     }
