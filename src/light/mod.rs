@@ -119,8 +119,8 @@ impl Light {
                 pdf: R::zero(),
                 valid: R::Mask::splat(true),
             },
-            Self::Constant { .. } => self.from_infinity(from, warp::sphere(u, v)),
-            Self::Envmap(map) => self.from_infinity(from, map.sample((u, v))),
+            Self::Constant { .. } => self.drawn_at_infinity(from, warp::sphere(u, v)),
+            Self::Envmap(map) => self.drawn_at_infinity(from, map.sample((u, v))),
             Self::Sh(light) => LightSample {
                 wi: receiver.n,
                 target: from,
@@ -135,7 +135,7 @@ impl Light {
 
     /// A sample of the environment.
     #[inline]
-    fn from_infinity<R: Real>(&self, from: Vector3<R>, wi: Vector3<R>) -> LightSample<R> {
+    fn drawn_at_infinity<R: Real>(&self, from: Vector3<R>, wi: Vector3<R>) -> LightSample<R> {
         let (radiance, pdf) = self.environment(wi);
         LightSample {
             wi,
