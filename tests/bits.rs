@@ -28,7 +28,7 @@ use packlight::{
 /// instruction set only, is a broken contract, and no hash is to be taken from it.
 const FROZEN: &[(&str, u64)] = &[
     ("cornell", 0x32a0_1a69_46e9_97eb),
-    ("harmonics", 0xebd8_7e80_0a8e_cba5),
+    ("harmonics", 0xe155_45d8_dad9_f219),
     ("materials", 0x5502_2167_9786_3bbd),
     ("mesh", 0x0a6d_2803_26e4_3f69),
     ("sky", 0xc2d0_ecd2_0935_bc66),

@@ -49,7 +49,7 @@ mod tests {
 
     /// ∫ f dω by midpoints in cos θ and φ.
     fn sphere(f: impl Fn(Vec3) -> f64) -> f64 {
-        let (rows, columns) = (400, 200);
+        let (rows, columns) = (2000, 32);
         let mut sum = 0.0;
         for i in 0..rows {
             let z = (f64::from(i) + 0.5) / f64::from(rows) * 2.0 - 1.0;
