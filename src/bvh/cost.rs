@@ -21,8 +21,11 @@ impl Cost {
     /// A packet, its nodes, and the children that it enters.
     pub(super) const PACKET: Self = Self(100.0);
     pub(super) const PACKET_NODE: Self = Self(35.0);
+    /// A node of a packet that points into several octants: eight tests of a box.
+    pub(super) const PACKET_NODE_APART: Self = Self(200.0);
     pub(super) const PACKET_CHILD: Self = Self(25.0);
-    /// How much more packets cost whose nodes are far away in memory: they wait for one node after the other.
+    /// How much more packets cost whose nodes are far away in memory, or whose rays are scattered: they wait for
+    /// one node after the other.
     pub(super) const FAR: u32 = 2;
     /// A ray on its own, its nodes, and its blocks.
     pub(super) const RAY: Self = Self(50.0);

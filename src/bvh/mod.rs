@@ -122,6 +122,9 @@ pub trait Leaves {
     /// Where the data of a slot's block begin, to be asked for ahead of time.
     fn address(&self, slot: u32) -> *const u8;
 
+    /// How many blocks' time [`intersect_block`](Leaves::intersect_block) takes for a leaf.
+    fn blocks(&self, first: u32, count: u32) -> u32;
+
     /// One ray, which `splat` puts into all lanes, against `count` slots at once: the lanes are primitives.
     /// More than what was asked for may be tested.
     fn intersect_block<const ANY: bool>(

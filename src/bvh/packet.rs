@@ -50,12 +50,12 @@ impl Bvh {
         loop {
             tally.node(active.count());
             let below = &mut stack[top..];
-            let entered = match &beam {
-                Some(beam) => enter_together(node, ray, beam, hit.t, farthest, below),
-                None => enter_apart(node, ray, hit.t, below),
+            let (entered, tested) = match &beam {
+                Some(beam) => (enter_together(node, ray, beam, hit.t, farthest, below), Cost::PACKET_NODE),
+                None => (enter_apart(node, ray, hit.t, below), Cost::PACKET_NODE_APART),
             };
             top += entered;
-            cost += Cost::PACKET_NODE + Cost::PACKET_CHILD * entered as u32;
+            cost += tested + Cost::PACKET_CHILD * entered as u32;
             // Leaves, until there is a node again.
             node = loop {
                 if top == 0 {

@@ -17,6 +17,9 @@ const PACKET_SPREAD: f32 = 1.2;
 /// has cost twice as much.
 const PROBE: u32 = 64;
 
+/// The same for scattered rays, which packets seldom suit.
+const PROBE_SCATTERED: u32 = 512;
+
 /// Up to sixty-four neighbours.
 pub(super) struct Run {
     /// Place of the first ray in its stream.
@@ -102,10 +105,12 @@ pub(super) struct Runs {
     forced: Way,
     /// The way of the run that is loaded and has not been taken.
     waiting: Option<Way>,
-    /// Is it one that could go together?
-    together: bool,
-    /// What has been learnt from closest hits, and from occlusion.
-    habits: [Habit; 2],
+    /// Does it point into one octant and spread little?
+    bundle: bool,
+    /// Is the tree one that scattered rays had better go through alone?
+    far: bool,
+    /// What has been learnt from closest hits and from occlusion, of scattered rays and of bundles.
+    habits: [[Habit; 2]; 2],
     pub(super) occluder: Occluder,
 }
 
@@ -118,12 +123,12 @@ struct Habit {
 }
 
 impl Habit {
-    fn choose_together(&mut self) -> bool {
+    fn choose_together(&mut self, probe: u32) -> bool {
         let (less, more) = (self.together.min(self.alone), self.together.max(self.alone));
         let cheaper = less == 0.0 || self.together <= self.alone;
         // The dearer the other way, the less often it is worth a try.
         self.turn += 1;
-        if self.turn as f32 * less < (PROBE as f32) * more {
+        if self.turn as f32 * less < probe as f32 * more {
             return cheaper;
         }
         self.turn = 0;
@@ -145,8 +150,9 @@ impl Default for Runs {
             next: 0,
             forced: Way::Chosen,
             waiting: None,
-            together: false,
-            habits: [Habit::default(); 2],
+            bundle: false,
+            far: false,
+            habits: [[Habit::default(); 2]; 2],
             occluder: Occluder::default(),
         }
     }
@@ -154,8 +160,8 @@ impl Default for Runs {
 
 impl Runs {
     /// Begins a stream.
-    pub(super) fn start(&mut self, way: Way) {
-        (self.next, self.forced, self.waiting) = (0, way, None);
+    pub(super) fn start(&mut self, way: Way, far: bool) {
+        (self.next, self.forced, self.waiting, self.far) = (0, way, None, far);
         self.occluder.forget();
     }
 
@@ -183,30 +189,40 @@ impl Runs {
         &self.run
     }
 
-    /// Could the run that was looked at go together?
-    pub(super) fn could_go_together(&self) -> bool {
-        self.together
+    /// The kind of the run that was looked at: bit 0 if it is scattered, bit 1 if it is a bundle.
+    pub(super) fn kind(&self) -> u32 {
+        1 << u32::from(self.bundle)
     }
 
     /// Remembers what the run that was taken cost as a tile or as packets.
     pub(super) fn learn_together<const ANY: bool>(&mut self, cost: Cost) {
-        blend(&mut self.habits[usize::from(ANY)].together, cost.0 / self.run.len as f32);
+        let habit = &mut self.habits[usize::from(ANY)][usize::from(self.bundle)];
+        let cost = if self.bundle { cost } else { cost * Cost::FAR };
+        blend(&mut habit.together, cost.0 / self.run.len as f32);
     }
 
-    /// Remembers what rays that could have gone together cost in a wave.
-    pub(super) fn learn_alone<const ANY: bool>(&mut self, cost: Cost, rays: u32) {
-        blend(&mut self.habits[usize::from(ANY)].alone, cost.0 / rays as f32);
+    /// Remembers what rays of some kinds cost in a wave.
+    pub(super) fn learn_alone<const ANY: bool>(&mut self, cost: Cost, rays: u32, kinds: u32) {
+        for (bit, habit) in self.habits[usize::from(ANY)].iter_mut().enumerate() {
+            if kinds >> bit & 1 != 0 {
+                blend(&mut habit.alone, cost.0 / rays as f32);
+            }
+        }
     }
 
     fn choose<const ANY: bool>(&mut self) -> Way {
         let limit = if ANY { PACKET_SPREAD } else { TILE_SPREAD };
-        self.together = self.run.spread().is_some_and(|spread| spread <= limit);
-        if !self.together || !self.habits[usize::from(ANY)].choose_together() {
+        self.bundle = self.run.spread().is_some_and(|spread| spread <= limit);
+        if !self.bundle && self.far {
+            return Way::Wave;
+        }
+        let probe = if self.bundle { PROBE } else { PROBE_SCATTERED };
+        if !self.habits[usize::from(ANY)][usize::from(self.bundle)].choose_together(probe) {
             Way::Wave
-        } else if ANY {
-            Way::Packet
-        } else {
+        } else if self.bundle && !ANY {
             Way::Tile
+        } else {
+            Way::Packet
         }
     }
 }

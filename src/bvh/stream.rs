@@ -71,7 +71,7 @@ impl Bvh {
         tracer: &mut Tracer<T>,
     ) {
         let Tracer { traversal, runs, wave } = tracer;
-        runs.start(way);
+        runs.start(way, self.is_far());
         // Leaves are those of one tree, and a tracer may go from one to the next.
         traversal.blocker = Child::ABSENT;
         while let Some(way) = runs.peek::<ANY, L, S, T>(leaves, stream, &mut traversal.tally) {

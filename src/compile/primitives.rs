@@ -293,6 +293,11 @@ impl Leaves for Primitives {
     }
 
     #[inline]
+    fn blocks(&self, first: u32, count: u32) -> u32 {
+        if (first as usize) < self.triangles.len() * BLOCK { 1 } else { count }
+    }
+
+    #[inline]
     fn intersect_block<const ANY: bool>(
         &self,
         first: u32,

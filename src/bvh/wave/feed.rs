@@ -113,9 +113,9 @@ pub(super) struct Feed {
     waiting: u64,
     /// Where occlusion rays of the run start, if not at the root.
     entry: Option<Node>,
-    /// Rays since the wave began, and whether any could have gone together.
+    /// Rays since the wave began, and their [kinds](Runs::kind).
     rays: u32,
-    together: bool,
+    kinds: u32,
 }
 
 impl Default for Feed {
@@ -125,15 +125,15 @@ impl Default for Feed {
             waiting: 0,
             entry: None,
             rays: 0,
-            together: false,
+            kinds: 0,
         }
     }
 }
 
 impl Feed {
-    /// How many rays have come since this was last asked, and whether any could have gone together.
-    pub(super) fn take_count(&mut self) -> (u32, bool) {
-        (std::mem::take(&mut self.rays), std::mem::take(&mut self.together))
+    /// How many rays have come since this was last asked, and of which kinds.
+    pub(super) fn take_count(&mut self) -> (u32, u32) {
+        (std::mem::take(&mut self.rays), std::mem::take(&mut self.kinds))
     }
 
     /// Starts the next ray in a slot; false if there is none, or if the next run goes another way. Rays that
@@ -165,7 +165,7 @@ impl Feed {
     }
 
     fn refill<const ANY: bool, S: Stream>(&mut self, bvh: &Bvh, stream: &mut S, runs: &mut Runs) {
-        self.together |= runs.could_go_together();
+        self.kinds |= runs.kind();
         let run = runs.take();
         self.rays += run.there().count_ones();
         self.entry = if ANY { run.entry(bvh) } else { None };

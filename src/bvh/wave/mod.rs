@@ -108,7 +108,7 @@ impl Bvh {
                 let mut done = slot.child == Child::ABSENT;
                 if let Kind::Leaf { first, count } = slot.child.kind() {
                     tally.leaf(count, 1);
-                    blocks += 1;
+                    blocks += leaves.blocks(first, count);
                     let leaf = slot.child;
                     done = slot.test::<ANY, L>(leaves, first, count);
                     if ANY && slot.hit.t == f32::NEG_INFINITY {
@@ -132,10 +132,10 @@ impl Bvh {
             }
             fresh = false;
         }
-        let (rays, together) = feed.take_count();
-        if together {
+        let (rays, kinds) = feed.take_count();
+        if rays > 0 {
             let cost = Cost::RAY * rays + Cost::RAY_NODE * steps + Cost::RAY_BLOCK * blocks;
-            runs.learn_alone::<ANY>(cost, rays);
+            runs.learn_alone::<ANY>(cost, rays, kinds);
         }
     }
 }
