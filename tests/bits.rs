@@ -17,7 +17,7 @@ use packlight::{
     load::{LoadOptions, load},
     picture::Picture,
     render::{Backend, Settings, render},
-    scene::{Aov, AovChannel, Film, Integrator, SceneDescription},
+    scene::{Aov, AovChannel, Film, Integrator, Projection, SceneDescription},
 };
 
 /// FNV-1a of each scene's picture by its own integrator, at [`FILM`] and [`SAMPLES`].
@@ -124,6 +124,26 @@ fn hash(picture: &Picture) -> u64 {
     let bytes =
         picture.channels.iter().flat_map(|channel| &channel.samples).flat_map(|x| x.to_bits().to_le_bytes());
     bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+/// A scene of ours, seen through a lens.
+fn through_a_lens(mut description: SceneDescription) -> SceneDescription {
+    let Projection::Perspective { x_fov } = description.sensor.projection else { panic!("not a pinhole") };
+    description.sensor.projection = Projection::ThinLens { x_fov, aperture_radius: 0.1, focus_distance: 2.5 };
+    description
+}
+
+#[test]
+fn a_lens_gives_the_same_bits_every_way() {
+    let (_, path) = scenes().into_iter().find(|(name, _)| name == "cornell").expect("there is a Cornell box");
+    let pinhole = compile(&description(&path)).expect("a scene of ours compiles");
+    let scene = compile(&through_a_lens(description(&path))).expect("a scene of ours compiles");
+    let packet = on_threads(1, &scene, &PACKET);
+    assert!(difference(&packet, &on_threads(1, &pinhole, &PACKET)).is_some(), "the lens can't be seen");
+    for (way, settings, threads) in WAYS {
+        let difference = difference(&on_threads(threads, &scene, &settings), &packet);
+        assert!(difference.is_none(), "a lens, {way}: {}", difference.unwrap_or_default());
+    }
 }
 
 #[test]

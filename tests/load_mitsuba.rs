@@ -526,6 +526,37 @@ fn materials_and_lights_that_are_wrong_are_refused() {
 }
 
 #[test]
+fn a_thin_lens_needs_its_aperture_and_its_focus() {
+    let sensor =
+        |inside: &str| format!("<scene version='3.0.0'><sensor type='thinlens'>\n{inside}</sensor></scene>");
+    let lens = "<float name='fov' value='60'/><float name='aperture_radius' value='0.5'/><float name='focus_distance' value='3'/>";
+    let projection = load_text_with(&sensor(lens), &[]).unwrap().description.sensor.projection;
+    let Projection::ThinLens { x_fov, aperture_radius, focus_distance } = projection else {
+        panic!("no lens")
+    };
+    assert!((x_fov.to_degrees() - 60.0).abs() < 1e-9);
+    assert_eq!((aperture_radius, focus_distance), (0.5, 3.0));
+    for (inside, expected) in [
+        ("", "1:25: the sensor `thinlens` needs `aperture_radius` | write <float name=\"aperture_radius\""),
+        (
+            "<float name='aperture' value='1'/>",
+            "1:25: the sensor `thinlens` needs `aperture_radius` | did you mean",
+        ),
+        (
+            "<float name='aperture_radius' value='1'/>",
+            "1:25: the sensor `thinlens` needs `focus_distance` | write <float name=\"focus_distance\"",
+        ),
+        (
+            "<float name='aperture_radius' value='0'/><float name='focus_distance' value='1'/>",
+            "2:38: `aperture_radius` must be greater than 0, but is 0",
+        ),
+    ] {
+        let found = refusal(&sensor(inside));
+        assert!(found.starts_with(expected), "{inside}\n   found {found}\nexpected {expected}");
+    }
+}
+
+#[test]
 fn sensors_and_integrators_that_are_wrong_are_refused() {
     let film = |inside: &str| format!("<film type='hdrfilm'>{inside}</film>");
     for (inside, expected) in [

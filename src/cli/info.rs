@@ -82,6 +82,7 @@ impl Info {
         let sensor = &description.sensor;
         let (projection, x_fov_degrees) = match sensor.projection {
             Projection::Perspective { x_fov } => ("perspective", Some(x_fov.to_degrees())),
+            Projection::ThinLens { x_fov, .. } => ("thinlens", Some(x_fov.to_degrees())),
             Projection::Orthographic => ("orthographic", None),
         };
         Self {

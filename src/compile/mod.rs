@@ -152,6 +152,10 @@ fn camera(sensor: &Sensor) -> Camera {
         Projection::Perspective { x_fov } => {
             Camera::perspective(sensor.to_world, libm::tan(x_fov / 2.0), size, clip)
         }
+        Projection::ThinLens { x_fov, aperture_radius, focus_distance } => {
+            let lens = (aperture_radius, focus_distance);
+            Camera::thin_lens(sensor.to_world, libm::tan(x_fov / 2.0), size, clip, lens)
+        }
         Projection::Orthographic => Camera::orthographic(sensor.to_world, size, clip),
     }
 }

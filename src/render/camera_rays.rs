@@ -21,12 +21,16 @@ fn even_bits(code: u32) -> u32 {
     (0..16).fold(0, |bits, b| bits | (code >> (2 * b) & 1) << b)
 }
 
+/// The pair of random numbers for the lens. Vertices count their pairs upwards from 1 and never come here.
+const LENS: u32 = u32::MAX;
+
 /// Rays through pixels (x, y) of the picture, each at its path's first pair of random numbers.
 #[inline]
 pub(super) fn rays<R: Real>(scene: &Scene, x: R::Bits, y: R::Bits, path: &Path<R>) -> RayLanes<R> {
-    let (u, v) = Sampler::<R>::new(path.key, path.sample).pair(0);
+    let sampler = Sampler::<R>::new(path.key, path.sample);
+    let (u, v) = sampler.pair(0);
     let at = |pixel: R::Bits, offset: R| R::from_int(pixel) + offset;
-    scene.camera.rays(at(x, u), at(y, v))
+    scene.camera.rays(at(x, u), at(y, v), || sampler.pair(LENS))
 }
 
 /// Keys of the paths through pixels (x, y).

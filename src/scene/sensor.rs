@@ -41,6 +41,15 @@ pub enum Projection {
         /// Angle that the film's **width** spans, radians, in (0, π). Loaders convert other axes.
         x_fov: f64,
     },
+    /// A lens without thickness: what is not at `focus_distance` is blurred.
+    ThinLens {
+        /// As seen from the centre of the lens; see [`Projection::Perspective`].
+        x_fov: f64,
+        /// Radius of the aperture, a disc; positive.
+        aperture_radius: f64,
+        /// Distance along the axis of the plane in focus; positive.
+        focus_distance: f64,
+    },
     /// Parallel rays; the film's width spans camera x in [-1, 1].
     Orthographic,
 }

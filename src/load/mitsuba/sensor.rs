@@ -37,22 +37,47 @@ pub(super) fn build(object: Object, files: &mut Files) -> Result<Sensor, LoadErr
     }
     let projection = match object.plugin() {
         "orthographic" => Projection::Orthographic,
-        _ => {
+        plugin => {
             if transform::similarity(to_world).is_none_or(|factor| (factor - 1.0).abs() > 1e-3) {
                 return Err(object
-                    .error_at("to_world", "the `to_world` of a `perspective` sensor can't scale or shear")
+                    .error_at(
+                        "to_world",
+                        format!("the `to_world` of a `{plugin}` sensor can't scale or shear"),
+                    )
                     .help("`fov` sets the size of the picture"));
             }
-            Projection::Perspective { x_fov: x_fov(object, film)? }
+            let x_fov = x_fov(object, film)?;
+            match plugin {
+                "thinlens" => Projection::ThinLens {
+                    x_fov,
+                    aperture_radius: required(object, "aperture_radius", "0.1")?,
+                    focus_distance: required(object, "focus_distance", "5")?,
+                },
+                _ => {
+                    // Everything in a pinhole's picture is in focus.
+                    object.float("focus_distance")?;
+                    Projection::Perspective { x_fov }
+                }
+            }
         }
     };
     object.finish()?;
     Ok(Sensor { to_world, projection, near_clip, far_clip, film, sampler })
 }
 
+/// A number greater than 0 that has no default.
+fn required(object: Object, name: &'static str, example: &str) -> Result<f64, LoadError> {
+    match object.has(name) {
+        true => object.positive(name, 1.0),
+        false => {
+            // Known here, so that the help can tell it from a misspelt name.
+            object.value(name);
+            Err(object.missing(name, &format!("<float name=\"{name}\" value=\"{example}\"/>")))
+        }
+    }
+}
+
 fn x_fov(object: Object, film: Film) -> Result<f64, LoadError> {
-    // Everything in a pinhole's picture is in focus.
-    object.float("focus_distance")?;
     object.exclude("fov", "focal_length")?;
     let axis = object.choice(
         "fov_axis",

@@ -41,7 +41,7 @@ impl Class {
         match self {
             Self::Scene => &[],
             Self::Integrator => &["path", "direct", "aov", "whitted"],
-            Self::Sensor => &["perspective", "orthographic"],
+            Self::Sensor => &["perspective", "thinlens", "orthographic"],
             Self::Sampler => &["independent", "stratified", "multijitter", "orthogonal", "ldsampler"],
             Self::Film => &["hdrfilm"],
             Self::RFilter => &["box", "gaussian"],
@@ -87,7 +87,7 @@ impl Class {
                 "prb_projective",
                 "direct_projective",
             ],
-            Self::Sensor => &["thinlens", "distant", "radiancemeter", "irradiancemeter", "batch"],
+            Self::Sensor => &["distant", "radiancemeter", "irradiancemeter", "batch"],
             Self::Sampler => &[],
             Self::Film => &["specfilm"],
             Self::RFilter => &["tent", "mitchell", "catmullrom", "lanczos"],
