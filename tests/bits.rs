@@ -17,7 +17,7 @@ use packlight::{
     load::{LoadOptions, load},
     picture::Picture,
     render::{Backend, Settings, render},
-    scene::{Aov, AovChannel, Film, Integrator, Projection, SceneDescription},
+    scene::{Aov, AovChannel, Film, Integrator, Projection, ReconstructionFilter, SceneDescription},
 };
 
 /// FNV-1a of each scene's picture by its own integrator, at [`FILM`] and [`SAMPLES`].
@@ -35,7 +35,7 @@ const FROZEN: &[(&str, u64)] = &[
 ];
 
 /// Four tiles of 32 × 32 at most, 32 × 3 and 11 × 3 pixels among them.
-const FILM: Film = Film { width: 43, height: 35 };
+const FILM: Film = Film::new(43, 35);
 /// Not a power of two.
 const SAMPLES: u32 = 3;
 
@@ -133,16 +133,33 @@ fn through_a_lens(mut description: SceneDescription) -> SceneDescription {
     description
 }
 
+/// A scene of ours, by another filter.
+fn filtered(mut description: SceneDescription, filter: ReconstructionFilter) -> SceneDescription {
+    description.sensor.film.filter = filter;
+    description
+}
+
 #[test]
-fn a_lens_gives_the_same_bits_every_way() {
+fn a_lens_and_every_filter_give_the_same_bits_every_way() {
     let (_, path) = scenes().into_iter().find(|(name, _)| name == "cornell").expect("there is a Cornell box");
-    let pinhole = compile(&description(&path)).expect("a scene of ours compiles");
-    let scene = compile(&through_a_lens(description(&path))).expect("a scene of ours compiles");
-    let packet = on_threads(1, &scene, &PACKET);
-    assert!(difference(&packet, &on_threads(1, &pinhole, &PACKET)).is_some(), "the lens can't be seen");
-    for (way, settings, threads) in WAYS {
-        let difference = difference(&on_threads(threads, &scene, &settings), &packet);
-        assert!(difference.is_none(), "a lens, {way}: {}", difference.unwrap_or_default());
+    let plain = description(&path);
+    let unchanged = on_threads(1, &compile(&plain).expect("a scene of ours compiles"), &PACKET);
+    let filters = [
+        ReconstructionFilter::Tent { radius: 1.0 },
+        ReconstructionFilter::Gaussian { stddev: 0.5 },
+        ReconstructionFilter::Mitchell { b: 0.5, c: 0.25 },
+        ReconstructionFilter::CatmullRom,
+        ReconstructionFilter::Lanczos { lobes: 2 },
+    ];
+    let filtered = filters.map(|filter| (format!("{filter:?}"), filtered(plain.clone(), filter)));
+    for (what, changed) in [("a lens".into(), through_a_lens(plain.clone()))].into_iter().chain(filtered) {
+        let scene = compile(&changed).expect("a scene of ours compiles");
+        let packet = on_threads(1, &scene, &PACKET);
+        assert!(difference(&packet, &unchanged).is_some(), "{what}: nothing is to be seen of it");
+        for (way, settings, threads) in WAYS {
+            let difference = difference(&on_threads(threads, &scene, &settings), &packet);
+            assert!(difference.is_none(), "{what}, {way}: {}", difference.unwrap_or_default());
+        }
     }
 }
 

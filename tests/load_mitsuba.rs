@@ -191,7 +191,7 @@ fn defaults_are_those_of_mitsuba() {
     assert_eq!(direction, glam::DVec3::Z);
     assert_eq!(scene.emitters[1], Emitter::Point { position: glam::DVec3::ZERO, intensity: Rgb::ONE });
     assert_eq!(scene.integrator, Integrator::default());
-    assert_eq!((scene.sensor.film, scene.sensor.sampler), (Film::default(), Sampler::default()));
+    assert_eq!((scene.sensor.film, scene.sensor.sampler), (Film::new(768, 576), Sampler::default()));
 }
 
 #[test]
@@ -285,9 +285,11 @@ fn legal_oddities_are_warnings() {
     has(&scene("<sensor type='orthographic'/>"), "the first sensor is used");
     has(&scene(""), "nothing in the scene shines");
     has("<scene version='3.0.0'><sensor type='orthographic'/></scene>", "no integrator");
+    has("<scene version='3.0.0'><sensor type='orthographic'/></scene>", "no film");
     has(
-        "<scene version='3.0.0'><sensor type='orthographic'><film type='hdrfilm'/></sensor></scene>",
-        "box filter",
+        "<scene version='3.0.0'><sensor type='orthographic'><film type='hdrfilm'>
+           <string name='pixel_format' value='luminance'/></film></sensor></scene>",
+        "`luminance` is not written",
     );
 }
 
@@ -526,6 +528,34 @@ fn materials_and_lights_that_are_wrong_are_refused() {
 }
 
 #[test]
+fn films_have_mitsubas_defaults() {
+    let film = |inside: &str| {
+        let text = format!("<scene version='3.0.0'><sensor type='perspective'>{inside}</sensor></scene>");
+        load_text_with(&text, &[]).expect(inside).description.sensor.film
+    };
+    let filter = |inside: &str| film(&format!("<film type='hdrfilm'>{inside}</film>")).filter;
+    let gaussian = ReconstructionFilter::Gaussian { stddev: 0.5 };
+    assert_eq!(film(""), Film { filter: gaussian, ..Film::new(768, 576) });
+    assert_eq!(filter(""), gaussian);
+    assert_eq!(filter("<rfilter type='gaussian'/>"), gaussian);
+    assert_eq!(filter("<rfilter type='box'/>"), ReconstructionFilter::Box);
+    assert_eq!(filter("<rfilter type='tent'/>"), ReconstructionFilter::Tent { radius: 1.0 });
+    let third = 1.0 / 3.0;
+    assert_eq!(filter("<rfilter type='mitchell'/>"), ReconstructionFilter::Mitchell { b: third, c: third });
+    let (b, c) = (0.5, third);
+    let other = "<rfilter type='mitchell'><float name='B' value='0.5'/></rfilter>";
+    assert_eq!(filter(other), ReconstructionFilter::Mitchell { b, c });
+    assert_eq!(filter("<rfilter type='catmullrom'/>"), ReconstructionFilter::CatmullRom);
+    assert_eq!(filter("<rfilter type='lanczos'/>"), ReconstructionFilter::Lanczos { lobes: 3 });
+    let cropped = film(
+        "<film type='hdrfilm'><integer name='width' value='10'/><integer name='height' value='8'/>
+           <integer name='crop_offset_y' value='2'/><integer name='crop_width' value='5'/>
+           <integer name='crop_height' value='6'/></film>",
+    );
+    assert_eq!(cropped.window(), Crop { x: 0, y: 2, width: 5, height: 6 });
+}
+
+#[test]
 fn a_thin_lens_needs_its_aperture_and_its_focus() {
     let sensor =
         |inside: &str| format!("<scene version='3.0.0'><sensor type='thinlens'>\n{inside}</sensor></scene>");
@@ -566,12 +596,36 @@ fn sensors_and_integrators_that_are_wrong_are_refused() {
             "2:52: `height` must be at most 65536, but is 99999 | ",
         ),
         (
-            film("<string name='pixel_format' value='rgba'/>"),
-            "2:57: `rgba` is no value of `pixel_format` | did you mean `rgb`?",
+            film("<string name='pixel_format' value='rgbb'/>"),
+            "2:57: `rgbb` is no value of `pixel_format` | did you mean `rgba`?",
         ),
         (
-            film("<rfilter type='tent'/>"),
-            "2:37: the rfilter `tent` is not supported yet | supported rfilters are `box` and `gaussian`",
+            film("<rfilter type='tend'/>"),
+            "2:37: there is no rfilter `tend` | did you mean `tent`? supported rfilters are `box`, ",
+        ),
+        (
+            film("<rfilter type='box'><float name='radius' value='1'/></rfilter>"),
+            "2:55: the rfilter `box` has no property `radius` | ",
+        ),
+        (
+            film("<rfilter type='tent'><float name='radius' value='-1'/></rfilter>"),
+            "2:71: `radius` must be greater than 0, but is -1 | ",
+        ),
+        (
+            film("<rfilter type='gaussian'><float name='stddev' value='1000'/></rfilter>"),
+            "2:75: `stddev` is 1000, more than 64 pixels | lengths of a filter",
+        ),
+        (
+            film("<rfilter type='mitchell'><float name='B' value='1.5'/></rfilter>"),
+            "2:70: `B` must lie between 0 and 1, but is 1.5 | ",
+        ),
+        (
+            film("<rfilter type='lanczos'><integer name='lobes' value='0'/></rfilter>"),
+            "2:75: `lobes` must be at least 1, but is 0 | ",
+        ),
+        (
+            film("<integer name='width' value='9'/><integer name='crop_offset_x' value='9'/>"),
+            "2:92: the crop ends at 18, but the film at 9 | `crop_offset_x` and `crop_width` together",
         ),
         (
             "<float name='fov' value='180'/>".into(),

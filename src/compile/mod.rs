@@ -1,6 +1,7 @@
 //! A description to columns in leaf order, ids and a tree.
 
 mod canonical;
+mod filter;
 mod lights;
 mod materials;
 mod mesh;
@@ -17,6 +18,7 @@ pub use surfaces::Surface;
 
 use crate::bvh::{Bvh, Child, Quality, Reference};
 use crate::camera::Camera;
+use crate::film::Filter;
 use crate::light::{Light, LightId};
 use crate::material::MaterialTable;
 use crate::scene::{Film, Integrator, Projection, Sampler, SceneDescription, Sensor};
@@ -35,6 +37,7 @@ pub struct Scene {
     /// Lights that rays which leave the scene see.
     pub(crate) environments: Vec<LightId>,
     pub(crate) camera: Camera,
+    pub(crate) filter: Filter,
     /// Size of the picture.
     pub film: Film,
     /// Samples per pixel and seed.
@@ -138,6 +141,7 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
         lights,
         environments,
         camera: camera(&description.sensor),
+        filter: filter::compile(description.sensor.film.filter),
         film: description.sensor.film,
         sampler: description.sensor.sampler,
         integrator: description.integrator.clone(),

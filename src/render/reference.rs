@@ -36,9 +36,9 @@ pub(super) fn render<I: Integrator>(
         for pixel in 0..tile.len() as u32 {
             let (x, y) = (tile.x + pixel % tile.width, tile.y + pixel / tile.width);
             let path = Path::start(camera_rays::keys::<f32>(scene, x, y), sample);
-            let ray = camera_rays::rays::<f32>(scene, x, y, &path).lane(0);
+            let (ray, weight) = camera_rays::rays::<f32>(scene, x, y, &path);
             let mut sums = vec![0.0; channels];
-            let mut flights = VecDeque::from([(ray, path)]);
+            let mut flights = VecDeque::from([(ray.lane(0), path)]);
             while let Some(flight) = flights.pop_front() {
                 let said = vertex(scene, integrator, &flight, channels, &mut traversal, statistics);
                 flights.extend(said.next.into_iter().flatten());
@@ -51,7 +51,7 @@ pub(super) fn render<I: Integrator>(
                     *sum += value;
                 }
             }
-            film.add(pixel as usize, sample, |c| sums[c]);
+            film.add(pixel as usize, sample, weight, |c| sums[c]);
         }
         statistics.samples += tile.len() as u64;
         sample_done();

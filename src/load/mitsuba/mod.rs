@@ -14,6 +14,7 @@ mod colour;
 mod document;
 mod emitter;
 mod files;
+mod film;
 mod integrator;
 mod parameters;
 mod presets;

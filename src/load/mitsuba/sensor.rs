@@ -1,6 +1,6 @@
-//! Cameras, films and samplers.
+//! Cameras and samplers.
 
-use super::{files::Files, properties::Object, transform, vocabulary::Class};
+use super::{files::Files, film, properties::Object, transform, vocabulary::Class};
 use crate::{
     load::LoadError,
     scene::{Film, Projection, Sampler, Sensor},
@@ -8,8 +8,6 @@ use crate::{
 
 /// Diagonal of a 36 mm × 24 mm negative, to which `focal_length` refers.
 const DIAGONAL_35MM: f64 = 43.266_615_305_567_87;
-/// Pictures wider or higher than this are taken for slips.
-const MAX_SIDE: u32 = 65_536;
 
 #[derive(Clone, Copy)]
 enum Axis {
@@ -25,7 +23,7 @@ pub(super) fn build(object: Object, files: &mut Files) -> Result<Sensor, LoadErr
         return Err(object.unknown_plugin());
     }
     let to_world = object.to_world()?;
-    let film = film(object, files)?;
+    let film = film::build(object, files)?;
     let sampler = sampler(object, files)?;
     let near_clip = object.positive("near_clip", 0.01)?;
     let far_clip = object.positive("far_clip", 10_000.0)?;
@@ -121,57 +119,6 @@ fn span_of_width(tangent: f64, axis: Axis, aspect: f64) -> f64 {
         Axis::Diagonal => tangent * aspect / (aspect * aspect + 1.0).sqrt(),
     };
     2.0 * libm::atan(half_width)
-}
-
-fn film(sensor: Object, files: &mut Files) -> Result<Film, LoadError> {
-    let default = Film::default();
-    let Some(film) = sensor.child(Class::Film)? else {
-        files
-            .warnings
-            .push(sensor.warning("the sensor has no film: 768 × 576 pixels and a box filter are used"));
-        return Ok(default);
-    };
-    if film.plugin() != "hdrfilm" {
-        return Err(film.unknown_plugin());
-    }
-    let size = Film {
-        width: film.count("width", default.width, 1, MAX_SIDE)?,
-        height: film.count("height", default.height, 1, MAX_SIDE)?,
-    };
-    film.choice("file_format", &[("openexr", ())], ())?;
-    film.choice("pixel_format", &[("rgb", ())], ())?;
-    film.choice("component_format", &[("float16", ()), ("float32", ()), ("uint32", ())], ())?;
-    filter(film, files)?;
-    film.finish()?;
-    Ok(size)
-}
-
-fn filter(film: Object, files: &mut Files) -> Result<(), LoadError> {
-    let Some(filter) = film.child(Class::RFilter)? else {
-        files.warnings.push(
-            film.warning("no rfilter is given, which means `gaussian`: the box filter is used in its place"),
-        );
-        return Ok(());
-    };
-    match filter.plugin() {
-        "box" => {
-            let radius = filter.positive("radius", 0.5)?;
-            if radius != 0.5 {
-                return Err(
-                    filter.error_at("radius", "a box filter of another radius than 0.5 is not supported")
-                );
-            }
-        }
-        "gaussian" => {
-            filter.positive("stddev", 0.5)?;
-            files.warnings.push(
-                filter
-                    .warning("the rfilter `gaussian` is not supported: the box filter is used in its place"),
-            );
-        }
-        _ => return Err(filter.unknown_plugin()),
-    }
-    filter.finish()
 }
 
 fn sampler(sensor: Object, files: &mut Files) -> Result<Sampler, LoadError> {

@@ -44,7 +44,7 @@ impl Class {
             Self::Sensor => &["perspective", "thinlens", "orthographic"],
             Self::Sampler => &["independent", "stratified", "multijitter", "orthogonal", "ldsampler"],
             Self::Film => &["hdrfilm"],
-            Self::RFilter => &["box", "gaussian"],
+            Self::RFilter => &["box", "gaussian", "tent", "mitchell", "catmullrom", "lanczos"],
             Self::Bsdf => &[
                 "diffuse",
                 "conductor",
@@ -90,7 +90,7 @@ impl Class {
             Self::Sensor => &["distant", "radiancemeter", "irradiancemeter", "batch"],
             Self::Sampler => &[],
             Self::Film => &["specfilm"],
-            Self::RFilter => &["tent", "mitchell", "catmullrom", "lanczos"],
+            Self::RFilter => &[],
             Self::Bsdf => &[
                 "thindielectric",
                 "hair",
