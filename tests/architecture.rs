@@ -38,6 +38,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("bumpalo", &["render/"]),
     ("clap", &["cli/"]),
     ("exr", &["picture/"]),
+    ("flate2", &["load/serialized.rs", "load/serialized/"]),
     ("glam", &[""]),
     ("image", &["picture/"]),
     ("indicatif", &["cli/"]),

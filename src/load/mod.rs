@@ -9,6 +9,7 @@ mod obj;
 mod obj_materials;
 mod obj_text;
 mod ply;
+mod serialized;
 mod text;
 
 use std::path::Path;

@@ -66,7 +66,7 @@ impl Class {
             ],
             Self::Texture => &["bitmap", "checkerboard"],
             Self::Emitter => &["area", "point", "spot", "directional", "constant"],
-            Self::Shape => &["sphere", "rectangle", "cube", "disk", "cylinder", "obj", "ply"],
+            Self::Shape => &["sphere", "rectangle", "cube", "disk", "cylinder", "obj", "ply", "serialized"],
         }
     }
 
@@ -108,7 +108,6 @@ impl Class {
                 &["envmap", "sunsky", "projector", "directionalarea", "volumelight", "sky", "sun"]
             }
             Self::Shape => &[
-                "serialized",
                 "blender",
                 "bsplinecurve",
                 "linearcurve",
