@@ -1,11 +1,6 @@
 //! Meshes and pictures: each file is read once.
 
-use std::{
-    collections::HashMap,
-    fs,
-    path::{Path, PathBuf},
-    sync::Arc,
-};
+use std::{collections::HashMap, fs, path::PathBuf, sync::Arc};
 
 use super::properties::Object;
 use crate::{
@@ -108,19 +103,5 @@ fn existing_file(object: Object) -> Result<PathBuf, LoadError> {
     let name = object
         .string("filename")?
         .ok_or_else(|| object.missing("filename", "<string name=\"filename\" value=\"…\"/>"))?;
-    let path = object.span("filename").resolve(name);
-    match path.is_file() {
-        true => Ok(path),
-        false => Err(object
-            .error_at("filename", format!("there is no file `{name}`"))
-            .label("not found")
-            .help(format!(
-                "looked for {}; names are relative to the XML file's folder",
-                absolute(&path).display()
-            ))),
-    }
-}
-
-fn absolute(path: &Path) -> PathBuf {
-    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+    object.folders().file(object.span("filename"), name)
 }

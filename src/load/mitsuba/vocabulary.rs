@@ -40,7 +40,7 @@ impl Class {
     pub(super) fn supported(self) -> &'static [&'static str] {
         match self {
             Self::Scene => &[],
-            Self::Integrator => &["path", "direct", "aov", "whitted"],
+            Self::Integrator => &["path", "direct", "aov", "moment", "whitted"],
             Self::Sensor => &["perspective", "thinlens", "orthographic"],
             Self::Sampler => &["independent", "stratified", "multijitter", "orthogonal", "ldsampler"],
             Self::Film => &["hdrfilm"],
@@ -78,7 +78,6 @@ impl Class {
                 "volpath",
                 "volpathmis",
                 "depth",
-                "moment",
                 "stokes",
                 "ptracer",
                 "prb",
@@ -124,7 +123,7 @@ impl Class {
     /// Every element that may stand in an object, for suggestions.
     pub(super) fn elements() -> impl Iterator<Item = &'static str> {
         let objects = Self::ALL.iter().map(|&(name, _)| name);
-        objects.chain(PROPERTIES.iter().copied()).chain(["default", "ref", "include"])
+        objects.chain(PROPERTIES.iter().copied()).chain(["default", "ref", "include", "path", "alias"])
     }
 }
 
@@ -140,8 +139,7 @@ pub(super) const PROPERTIES: [&str; 9] =
     ["integer", "float", "boolean", "string", "point", "vector", "rgb", "spectrum", "transform"];
 
 /// Elements that Mitsuba has and packlight does not.
-pub(super) const FOREIGN_ELEMENTS: [&str; 7] =
-    ["alias", "path", "medium", "phase", "volume", "animation", "tensor"];
+pub(super) const FOREIGN_ELEMENTS: [&str; 5] = ["medium", "phase", "volume", "animation", "tensor"];
 
 /// The known word most like a misspelt one, if any is alike.
 pub(super) fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {

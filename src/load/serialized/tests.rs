@@ -138,7 +138,11 @@ fn damaged_files_are_refused() {
     assert_refused(b"ply", 0, "this is not a mesh as Mitsuba serializes it");
     assert_refused(b"", 0, "this is not a mesh as Mitsuba serializes it");
     assert_refused(&[0x1C, 4, 9, 0], 0, "version 9 of the format is not known; 3 and 4 are");
-    assert_refused(&good[..HEADER], 0, "mesh 0: the flags can't be unpacked after 0 bytes: incomplete deflate stream");
+    assert_refused(
+        &good[..HEADER],
+        0,
+        "mesh 0: the flags can't be unpacked after 0 bytes: incomplete deflate stream",
+    );
     assert_refused(&good[..40], 0, "mesh 0: ");
     let mut astray = file(&[Source::default().encode(4), Source::default().encode(4)], 4);
     let entry = astray.len() - 12;
