@@ -90,10 +90,10 @@ impl Curve {
     fn reduced(&self, weight: impl Fn([f64; 4]) -> f64) -> [f64; 3] {
         let mut xyz = [0.0; 3];
         let mut white = 0.0;
-        // Steps of a nanometre; the curves of the CIE are linear over five, and nearly 0 at both ends.
-        let last = cie::FIRST as u32 + (cie::ROWS.len() as u32 - 1) * cie::STEP as u32;
-        for wavelength in cie::FIRST as u32..=last {
-            let wavelength = f64::from(wavelength);
+        // The middle of each nanometre: curves that break off do so between two of them.
+        let nanometres = (cie::ROWS.len() as u32 - 1) * cie::STEP as u32;
+        for step in 0..nanometres {
+            let wavelength = cie::FIRST + f64::from(step) + 0.5;
             let row = row(wavelength);
             let weight = weight(row);
             let value = self.at(wavelength) * weight;
