@@ -14,8 +14,8 @@ use packlight::{
 
 /// A lamp of radiance 1 that fills the middle of the picture, before nothing.
 fn lamp(projection: Projection) -> SceneDescription {
-    let mut scene = SceneDescription::default();
-    scene.integrator = Integrator::Path { max_depth: Some(2), rr_depth: 5, hide_emitters: false };
+    let integrator = Integrator::Path { max_depth: Some(2), rr_depth: 5, hide_emitters: false };
+    let mut scene = SceneDescription { integrator, ..SceneDescription::default() };
     scene.sensor.projection = projection;
     scene.sensor.film = Film::new(48, 32);
     scene.sensor.sampler.sample_count = 64;
@@ -64,8 +64,10 @@ fn a_lens_blurs_and_never_raises_radiance() {
     assert!((sum(&sharp) / sum(&pinhole) - 1.0).abs() < 5e-3, "{} {}", sum(&sharp), sum(&pinhole));
 }
 
+type Curve = Box<dyn Fn(f64) -> f64>;
+
 /// Every filter with other parameters than its own, how far it reaches, and f at x ≥ 0.
-fn filters() -> Vec<(ReconstructionFilter, f64, Box<dyn Fn(f64) -> f64>)> {
+fn filters() -> Vec<(ReconstructionFilter, f64, Curve)> {
     let cubic = |b: f64, c: f64| {
         move |x: f64| match x < 1.0 {
             true => {
