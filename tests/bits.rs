@@ -28,7 +28,7 @@ use packlight::{
 /// instruction set only, is a broken contract, and no hash is to be taken from it.
 const FROZEN: &[(&str, u64)] = &[
     ("cornell", 0x32a0_1a69_46e9_97eb),
-    ("materials", 0x1bb6_f28c_6ae1_5414),
+    ("materials", 0xe330_97e8_4d74_8670),
     ("mesh", 0xf9c1_a1dc_3503_9fbb),
     ("spheres", 0x21e4_89b2_3669_2b6b),
     ("whitted", 0xde1e_e07d_d10c_2ffd),

@@ -177,6 +177,25 @@ fn curves_that_are_wrong_are_refused() {
 }
 
 #[test]
+fn a_checkerboard_as_a_number_has_its_fields_exchanged() {
+    let fields = "<float name='color0' value='0.75'/><float name='color1' value='0.25'/>";
+    let board = |slot: &str| format!("<texture type='checkerboard' name='{slot}'>{fields}</texture>");
+    let body = format!(
+        "<shape type='cube'><bsdf type='mask'>{}<bsdf type='diffuse'>{}</bsdf></bsdf></shape>",
+        board("opacity"),
+        board("reflectance")
+    );
+    let scene = loaded(&[("main.xml", &scene(&body))]);
+    let Material::Mask { opacity, nested } = &scene.materials[0] else { panic!("no mask") };
+    let Material::Diffuse { reflectance } = &**nested else { panic!("not diffuse") };
+    let first = |texture: &Texture| match texture {
+        Texture::Checkerboard { color0, .. } => color0.x,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!((first(reflectance), first(opacity)), (0.75, 0.25));
+}
+
+#[test]
 fn a_moment_is_the_integrator_inside_it() {
     let sensor = "<sensor type='perspective'/>";
     let text = |integrator: &str| format!("<scene version='3.0.0'>{sensor}\n{integrator}</scene>");
