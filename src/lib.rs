@@ -36,5 +36,7 @@ pub mod compile;
 pub mod load;
 // floor 6
 pub mod render;
+// floor 7
+pub mod lobe;
 // roof
 pub mod cli;

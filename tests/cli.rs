@@ -207,3 +207,130 @@ fn a_closed_pipe_is_not_a_panic() {
         assert!(!stderr(&output).contains("panicked"), "{}", stderr(&output));
     }
 }
+
+#[test]
+fn a_model_is_drawn_tabulated_and_checked() {
+    let folder = folder("brdf");
+    let (svg, png, csv) = (path(&folder, "a.svg"), path(&folder, "a.png"), path(&folder, "a.csv"));
+    for plot in [&svg, &png] {
+        let model = "plastic:diffuse_reflectance=0.1 0.2 0.6";
+        let output = packlight(&["brdf", model, "-o", plot, "--csv", &csv, "--spp", "1"]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    }
+    let drawn = fs::read_to_string(&svg).expect("it was written");
+    assert!(drawn.starts_with("<svg") && drawn.ends_with("</svg>"), "{}", &drawn[..80]);
+    assert_eq!(drawn.matches("<image ").count(), 2, "the lobe and the sphere");
+    assert!(fs::read(&png).expect("it was written").starts_with(b"\x89PNG"));
+    let table = fs::read_to_string(&csv).expect("it was written");
+    for part in [
+        "quantity,incident_degrees,outgoing_degrees,r,g,b\n",
+        "\nslice,40,",
+        "\nspike,80,",
+        "\nreflected,89,,",
+    ] {
+        assert!(table.contains(part), "{part}");
+    }
+    let names: Vec<_> = fs::read_dir(&folder).expect("readable").collect();
+    assert_eq!(names.len(), 3, "something was left behind");
+}
+
+#[test]
+fn a_model_that_is_none_fails_its_check() {
+    let good = packlight(&["brdf", "roughconductor:alpha=0.3,material=Au", "--check"]);
+    assert_eq!(good.status.code(), Some(0), "{}", stdout(&good));
+    for property in ["reciprocity", "albedo", "isotropy", "pdf = 1", "samples follow pdf"] {
+        assert!(stdout(&good).contains(property), "{property} is not in\n{}", stdout(&good));
+    }
+    let toon = packlight(&["brdf", "toon", "--check"]);
+    assert_eq!(toon.status.code(), Some(1));
+    assert!(stdout(&toon).lines().any(|line| line.contains("reciprocity") && line.ends_with("NO")));
+    assert!(stderr(&toon).contains("toon is not a reflection model"), "{}", stderr(&toon));
+}
+
+#[test]
+fn what_brdf_does_not_understand_is_refused() {
+    fails(&["brdf"], 2, "MODEL");
+    fails(&["brdf", "diffuse"], 2, "nothing is asked for");
+    fails(&["brdf", "diffuse", "-o", "a.exr"], 2, ".svg or .png");
+    fails(&["brdf", "diffuse", "--check", "--light", "90"], 2, "less than 90");
+    fails(&["brdf", "--scene", "a.xml", "--check"], 2, "--material");
+    fails(&["brdf", "diffuse", "--scene", "a.xml", "--material", "b", "--check"], 2, "cannot be used with");
+    fails(&["brdf", "sheet"], 2, "--output");
+    fails(&["brdf", "difuse", "--check"], 1, "did you mean `diffuse`?");
+    fails(&["brdf", "diffuse:reflectance=2", "--check"], 1, "MODEL:1:21");
+    fails(&["brdf", "diffuse", "-o", "no/such/a.svg"], 1, "create it first");
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/spheres.xml");
+    fails(&["brdf", "--scene", scene, "--material", "mettal", "--check"], 1, "did you mean `metal`?");
+}
+
+/// A point light so strong that its inverse square is not a number any more.
+fn blinding(folder: &Path) -> String {
+    let scene = path(folder, "blinding.xml");
+    let text = "<scene version='3.0.0'><integrator type='direct'/>
+        <sensor type='perspective'><film type='hdrfilm'><integer name='width' value='8'/>
+        <integer name='height' value='8'/><rfilter type='box'/></film></sensor>
+        <shape type='rectangle'><transform name='to_world'><rotate y='1' angle='180'/><translate z='5'/></transform></shape>
+        <emitter type='point'><point name='position' x='0' y='0' z='4.99'/>
+        <rgb name='intensity' value='3e38'/></emitter></scene>";
+    fs::write(&scene, text).expect("a scene can be written");
+    scene
+}
+
+#[test]
+fn samples_that_are_not_finite_are_told_with_the_command_that_replays_them() {
+    let folder = folder("blinding");
+    let (scene, out) = (blinding(&folder), path(&folder, "out.exr"));
+    let output = packlight(&["render", &scene, "-o", &out, "--spp", "4", "--seed", "3", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert!(json["invalid_samples"].as_u64() > Some(0), "{json}");
+    let warning = stderr(&output);
+    let command = warning.split_once("packlight ").expect("a command").1.trim();
+    assert!(command.contains("--seed 3 --pixel"), "{warning}");
+    for more in [&[][..], &["--backend", "scalar"]] {
+        let words: Vec<&str> = command.split(' ').chain(more.iter().copied()).collect();
+        let replayed = packlight(&words);
+        assert_eq!(replayed.status.code(), Some(0), "{}", stderr(&replayed));
+        assert!(stdout(&replayed).contains(" inf"), "{}", stdout(&replayed));
+    }
+}
+
+#[test]
+fn pixels_are_within_the_picture_and_samples_need_one() {
+    let folder = folder("pixel");
+    let scene = blinding(&folder);
+    fails(&["render", &scene, "--pixel", "8,0"], 2, "8 x 8 pixels");
+    fails(&["render", &scene, "--sample", "1"], 2, "--pixel");
+    fails(&["render", &scene, "--pixel", "1,1", "-o", "a.png"], 2, "cannot be used with");
+}
+
+#[test]
+fn the_meter_reads_the_sky() {
+    let folder = folder("meter");
+    let scene = path(&folder, "sky.xml");
+    let text = "<scene version='3.0.0'><integrator type='path'/><sensor type='perspective'/>
+        <emitter type='constant'><rgb name='radiance' value='1, 2, 0'/></emitter></scene>";
+    fs::write(&scene, text).expect("a scene can be written");
+    let output = packlight(&["meter", &scene, "--at", "0,-1,0", "--normal", "-1,0,0", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let (red, error) = (json["irradiance_w_m2"][0].as_f64(), json["standard_error_w_m2"][0].as_f64());
+    let (red, error) = (red.expect("a number"), error.expect("a number"));
+    assert!((red - std::f64::consts::PI).abs() < 3.0 * error + 1e-5, "{red} ± {error}");
+    assert_eq!(json["irradiance_w_m2"][2].as_f64(), Some(0.0));
+    fails(&["meter", &scene, "--at", "0,0", "--normal", "1,0,0"], 2, "three numbers");
+    fails(&["meter", &scene, "--at", "0,0,0", "--normal", "0,0,0"], 2, "a direction has a length");
+}
+
+#[test]
+fn a_picture_is_reduced_to_nine_coefficients() {
+    let folder = folder("harmonics");
+    let out = path(&folder, "sky.json");
+    let output = packlight(&["envmap", "scenes/textures/sky.hdr", "--sh", "-o", &out]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stdout(&output).contains("root mean square"), "{}", stdout(&output));
+    let written = fs::read_to_string(&out).expect("the file is there");
+    let kept = fs::read_to_string("scenes/textures/sky.json").expect("the repository has it");
+    assert_eq!(written, kept, "scenes/textures/sky.json is not what sky.hdr gives");
+    fails(&["envmap", "scenes/textures/sky.hdr", "-o", &out], 2, "--sh");
+}

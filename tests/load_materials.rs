@@ -71,7 +71,8 @@ fn defaults_are_those_of_mitsuba() {
             specular_transmittance: grey(1.0),
         }
     );
-    for (bsdf, roughness) in [("plastic", None), ("roughplastic", Some((Distribution::Beckmann, 0.1)))] {
+    for (bsdf, roughness) in [("plastic", None), ("roughplastic", Some((Distribution::Beckmann, grey(0.1))))]
+    {
         assert_eq!(
             material(&format!("<bsdf type='{bsdf}'/>")),
             Material::Plastic {
@@ -107,9 +108,9 @@ fn every_slot_takes_a_number_a_checkerboard_or_a_picture() {
         ("roughconductor", &["alpha", "eta", "k", "specular_reflectance"]),
         ("roughdielectric", &["alpha", "specular_reflectance", "specular_transmittance"]),
         ("plastic", &["diffuse_reflectance", "specular_reflectance"]),
-        ("roughplastic", &["diffuse_reflectance", "specular_reflectance"]),
+        ("roughplastic", &["alpha", "diffuse_reflectance", "specular_reflectance"]),
         ("ward", &["diffuse_reflectance", "specular_reflectance", "alpha"]),
-        ("phong", &["diffuse_reflectance", "specular_reflectance"]),
+        ("phong", &["exponent", "diffuse_reflectance", "specular_reflectance"]),
         ("toon", &["reflectance"]),
         ("principled", &["base_color", "roughness", "metallic", "anisotropic", "spec_tint", "spec_trans"]),
         ("principled", &["sheen", "sheen_tint", "clearcoat", "clearcoat_gloss", "flatness"]),
@@ -196,6 +197,51 @@ fn bad_parameters_are_refused() {
             "<bsdf type='toon'><integer name='bands' value='1'/></bsdf>",
             "`bands` must be at least 2, but is 1",
         ),
+        (
+            "<bsdf type='toon'><integer name='bands' value='3'/><string name='ramp' value='0: 1'/></bsdf>",
+            "`bands` and `ramp` exclude each other",
+        ),
+        (
+            "<bsdf type='toon'><string name='ramp' value='0.5: 1 1'/></bsdf>",
+            "`0.5: 1 1` is no stop of a ramp | write cosine: colour; cosine: colour",
+        ),
+        ("<bsdf type='toon'><string name='ramp' value='1.5: 1'/></bsdf>", "`1.5: 1` is no stop of a ramp"),
+        ("<bsdf type='toon'><string name='ramp' value=' ; '/></bsdf>", "a ramp has 1 to 64 stops, not 0"),
+        (
+            "<bsdf type='toon'><string name='ramp' value='0.5: 1; 0.2: 0.5'/></bsdf>",
+            "stops must ascend, but 0.5 stands before 0.2",
+        ),
+        (
+            "<bsdf type='phong'><float name='exponent' value='0'/></bsdf>",
+            "`exponent` must be greater than 0, but is 0",
+        ),
+        (
+            "<bsdf type='roughdielectric'><float name='alpha' value='-1'/></bsdf>",
+            "`alpha` must be greater than 0, but is -1",
+        ),
+        ("<bsdf type='ward'><float name='alpha' value='0'/></bsdf>", "`alpha` must be greater than 0"),
+        (
+            "<bsdf type='dielectric'><float name='int_ior' value='0'/></bsdf>",
+            "`int_ior` must be greater than 0",
+        ),
+        (
+            "<bsdf type='roughdielectric'><float name='ext_ior' value='0'/></bsdf>",
+            "`ext_ior` must be greater than 0",
+        ),
+        ("<bsdf type='conductor'><rgb name='eta' value='-1'/></bsdf>", "`eta` must not be negative"),
+        (
+            "<bsdf type='diffuse'><rgb name='reflectance' value='1.2, 0.5, 0.5'/></bsdf>",
+            "`reflectance` must lie between 0 and 1 | a surface can't reflect more",
+        ),
+        (
+            "<bsdf type='bumpmap'><texture type='bitmap'><string name='filename' value='gone.png'/></texture>\
+             <bsdf type='diffuse'/></bsdf>",
+            "there is no file `gone.png`",
+        ),
+        (
+            "<bsdf type='merl'><string name='filename' value='gone.brdf'/></bsdf>",
+            "there is no file `gone.brdf`",
+        ),
         ("<bsdf type='mask'/>", "the bsdf `mask` needs `a bsdf`"),
         (
             "<bsdf type='blendbsdf'><float name='weight' value='0.5'/></bsdf>",
@@ -280,4 +326,84 @@ fn a_texture_of_one_texel_is_the_right_picture() {
         let sample = centre(&picture);
         assert!((sample - 0.5).abs() < 5e-3, "{xml}: {sample}");
     }
+}
+
+/// PNGs that are not 8 bits a channel are read for what they are.
+#[test]
+fn deep_and_palette_pictures_are_the_right_colour() {
+    let folder = folder();
+    for (name, bytes, want) in
+        [("deep.png", &SIXTEEN_BITS[..], 0.2140), ("palette.png", &PALETTE[..], 0.5029)]
+    {
+        fs::write(folder.path().join(name), bytes).expect("it can be written");
+        let xml = format!(
+            "<bsdf type='diffuse'><texture name='reflectance' type='bitmap'>\
+             <string name='filename' value='{name}'/></texture></bsdf>"
+        );
+        let description = load_in(folder.path(), &xml).unwrap_or_else(|e| panic!("{e}")).description;
+        let scene = compile(&description).expect("one rectangle compiles");
+        let picture = render(&scene, &Settings::default(), &|_| {}).picture;
+        let sample = centre(&picture);
+        assert!((sample - want).abs() < 5e-3, "{name}: {sample}, not {want}");
+    }
+}
+
+#[rustfmt::skip]
+mod pictures {
+    /// 1 × 1, 16 bits a channel: (1, 0x8000/0xffff, 0), encoded.
+    pub(super) const SIXTEEN_BITS: [u8; 72] = [137, 80, 78, 71, 13, 10, 26, 10, 0, 0, 0, 13, 73, 72, 68, 82, 0, 0, 0, 1, 0, 0, 0, 1, 16, 2, 0, 0, 0, 192, 231, 143, 157, 0, 0, 0, 15, 73, 68, 65, 84, 120, 218, 99, 248, 255, 191, 129, 129, 129, 1, 0, 12, 252, 2, 127, 26, 12, 40, 139, 0, 0, 0, 0, 73, 69, 78, 68, 174, 66, 96, 130];
+    /// 1 × 1, two bits a pixel: the last of three colours, whose green is 188.
+    pub(super) const PALETTE: [u8; 88] = [137, 80, 78, 71, 13, 10, 26, 10, 0, 0, 0, 13, 73, 72, 68, 82, 0, 0, 0, 1, 0, 0, 0, 1, 2, 3, 0, 0, 0, 98, 123, 44, 26, 0, 0, 0, 9, 80, 76, 84, 69, 0, 0, 0, 255, 255, 255, 10, 188, 255, 27, 35, 8, 158, 0, 0, 0, 10, 73, 68, 65, 84, 120, 218, 99, 104, 0, 0, 0, 130, 0, 129, 218, 69, 8, 59, 0, 0, 0, 0, 73, 69, 78, 68, 174, 66, 96, 130];
+}
+use pictures::{PALETTE, SIXTEEN_BITS};
+
+#[test]
+fn textures_that_are_damaged_are_told() {
+    let folder = folder();
+    fs::write(folder.path().join("a.png"), &SIXTEEN_BITS[..40]).expect("it can be written");
+    let texture = "<texture name='alpha' type='bitmap'><string name='filename' value='a.png'/></texture>";
+    let found = refusal_in(folder.path(), &format!("<bsdf type='roughplastic'>{texture}</bsdf>"));
+    assert!(found.starts_with("the picture can't be used: "), "{found}");
+}
+
+#[test]
+fn a_ramp_that_makes_light_is_warned_of() {
+    let xml = "<bsdf type='toon'><string name='ramp' value='0.1: 1 0.5 0.2'/></bsdf>";
+    let loaded = load_in(folder().path(), xml).unwrap_or_else(|e| panic!("{e}"));
+    let Material::Toon { ramp, .. } = &loaded.description.materials[0] else { panic!() };
+    assert_eq!(**ramp, Ramp::Steps(vec![Stop { cos: 0.1, color: Rgb::new(1.0, 0.5, 0.2) }]));
+    let warnings: Vec<&str> = loaded.warnings.iter().map(|warning| warning.message.as_str()).collect();
+    assert_eq!(warnings, ["the ramp reflects 1.80 times the light that arrives, before `reflectance`"]);
+}
+
+/// Cornell's files, from the folder beside the project, are not part of it.
+#[test]
+fn cornells_measurements_have_the_colour_of_their_paint() {
+    let shared = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/scenes/brdf");
+    if !shared.is_dir() {
+        println!("skipped: {} is not there", shared.display());
+        return;
+    }
+    for (name, brightest) in [("garnet_red", 0), ("krylon_blue", 2)] {
+        let file = shared.join(format!("{name}.brdf"));
+        let xml = format!("<bsdf type='merl'><string name='filename' value='{}'/></bsdf>", file.display());
+        let description = load_in(folder().path(), &xml).unwrap_or_else(|e| panic!("{e}")).description;
+        let scene = compile(&description).expect("one rectangle compiles");
+        let picture = render(&scene, &Settings::default(), &|_| {}).picture;
+        let mean = |k: usize| picture.channels[k].samples[27];
+        for k in (0..3).filter(|k| *k != brightest) {
+            assert!(mean(brightest) > 1.5 * mean(k), "{name}: {} {} {}", mean(0), mean(1), mean(2));
+        }
+        assert!(mean(brightest) < 0.6, "{name}: {}", mean(brightest));
+    }
+}
+
+#[test]
+fn a_damaged_brdf_is_told_with_its_line() {
+    let folder = folder();
+    fs::write(folder.path().join("a.brdf"), "# half a file\n2\n450 600\n0.1 0 0.2 0 0.5\n")
+        .expect("writable");
+    let xml = "<bsdf type='merl'><string name='filename' value='a.brdf'/></bsdf>";
+    let error = load_in(folder.path(), xml).expect_err("it is damaged").to_string();
+    assert!(error.ends_with("a.brdf:4:15: the file ends where f at 600 nm should stand"), "{error}");
 }

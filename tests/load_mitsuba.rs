@@ -5,6 +5,7 @@ use std::{fs, sync::Arc};
 use miette::Diagnostic;
 use packlight::{
     load::{LoadError, LoadOptions, Loaded, load},
+    picture::{Channel, Picture, Preview, save},
     scene::*,
 };
 
@@ -151,7 +152,7 @@ fn defaults_are_those_of_mitsuba() {
             Material::Phong {
                 diffuse_reflectance: constant(0.5),
                 specular_reflectance: constant(0.2),
-                exponent: 30.0,
+                exponent: constant(30.0),
             },
         ]
     );
@@ -189,6 +190,24 @@ fn integrators_have_their_parameters() {
             Integrator::Path { max_depth: None, rr_depth: 5, hide_emitters: false },
         ),
         ("<integrator type='whitted'/>", Integrator::Whitted { max_depth: 10 }),
+        ("<integrator type='ao'/>", Integrator::AmbientOcclusion { distance: f32::INFINITY }),
+        (
+            "<integrator type='ao'><float name='distance' value='2.5'/></integrator>",
+            Integrator::AmbientOcclusion { distance: 2.5 },
+        ),
+        (
+            "<integrator type='irradiance'><integer name='max_depth' value='3'/></integrator>",
+            Integrator::Irradiance { max_depth: Some(3), rr_depth: 5 },
+        ),
+        (
+            "<integrator type='aov'><string name='aovs' value='a:directional_albedo,m:material_id'/></integrator>",
+            Integrator::Aov {
+                channels: vec![
+                    AovChannel { name: "a".into(), kind: Aov::DirectionalAlbedo },
+                    AovChannel { name: "m".into(), kind: Aov::MaterialId },
+                ],
+            },
+        ),
         (
             "<integrator type='direct'><boolean name='hide_emitters' value='true'/></integrator>",
             Integrator::Direct { hide_emitters: true },
@@ -249,6 +268,66 @@ fn shapes_share_what_they_read() {
 }
 
 #[test]
+fn environments_are_pictures_that_may_be_turned() {
+    let folder = tempfile::tempdir().unwrap();
+    let plane = |name: &str, value: f32| Channel { name: name.into(), samples: vec![value, 1.0, 2.0, 3.0] };
+    let write = |name: &str, red: f32| {
+        let channels = vec![plane("R", red), plane("G", 0.0), plane("B", 0.0)];
+        let picture = Picture { width: 2, height: 2, channels };
+        save(&picture, &folder.path().join(name), Preview::default()).unwrap();
+    };
+    write("sky.exr", 0.5);
+    write("hole.exr", -0.5);
+    let path = folder.path().join("scene.xml");
+    let read = |file: &str, more: &str| {
+        let name = format!("<string name='filename' value='{file}'/>");
+        fs::write(&path, scene(&format!("<emitter type='envmap'>{name}{more}</emitter>"))).unwrap();
+        load(&path, &LoadOptions::default())
+    };
+    let turned = "<transform name='to_world'><scale value='2'/><rotate y='1' angle='90'/></transform>";
+    let loaded = read("sky.exr", &format!("<float name='scale' value='3'/>{turned}")).unwrap();
+    let [Emitter::Envmap { picture, scale, to_world }] = &loaded.description.emitters[..] else {
+        panic!("{:?}", loaded.description.emitters)
+    };
+    assert_eq!((picture.width, *scale), (2, 3.0));
+    assert!((*to_world * glam::DVec3::Z - glam::DVec3::X).length() < 1e-12);
+    let holed = read("hole.exr", "").unwrap().warnings;
+    assert!(
+        holed.iter().any(|w| w.message == "negative values in the picture (1) are taken as 0"),
+        "{holed:?}"
+    );
+    for (file, more, expected) in [
+        ("sky.exr", "<float name='scale' value='-1'/>", "`scale` must not be negative"),
+        ("sky.exr", "<float name='scale' value='2e38'/>", "R of pixel (0, 1) is 2"),
+        ("sky.exr", "<transform name='to_world'><scale x='2'/></transform>", "not stretched"),
+    ] {
+        let error = read(file, more).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+}
+
+#[test]
+fn nine_coefficients_are_a_light() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows: Vec<String> = (0..9).map(|i| format!("[{i}, 0.5, -1]")).collect();
+    fs::write(folder.path().join("sky.json"), format!("{{\"coefficients\": [{}]}}", rows.join(","))).unwrap();
+    fs::write(folder.path().join("bad.json"), "{\"coefficients\": [[1, 2, 3]]}").unwrap();
+    let path = folder.path().join("scene.xml");
+    let read = |inside: &str| {
+        fs::write(&path, scene(&format!("<emitter type='shlight'>{inside}</emitter>"))).unwrap();
+        load(&path, &LoadOptions::default())
+    };
+    let inside = "<string name='filename' value='sky.json'/><float name='scale' value='2'/>";
+    let loaded = read(inside).unwrap();
+    let [Emitter::Sh { coefficients, .. }] = &loaded.description.emitters[..] else {
+        panic!("{:?}", loaded.description.emitters)
+    };
+    assert_eq!(coefficients[8].to_array(), [16.0, 1.0, -2.0]);
+    let error = read("<string name='filename' value='bad.json'/>").unwrap_err();
+    assert!(error.to_string().contains("the coefficients can't be used: "), "{error}");
+}
+
+#[test]
 fn legal_oddities_are_warnings() {
     let has = |text: &str, part: &str| {
         let found = warnings(text);
@@ -304,7 +383,8 @@ fn elements_and_types_that_are_wrong_are_refused() {
             "<bsdf type='thindielectric' id='x'/>",
             "3:13: the bsdf `thindielectric` is not supported yet | supported bsdfs are `diffuse`, `conductor`, ",
         ),
-        ("<emitter type='envmap'/>", "3:16: the emitter `envmap` is not supported yet | "),
+        ("<emitter type='sunsky'/>", "3:16: the emitter `sunsky` is not supported yet | "),
+        ("<emitter type='envmap'/>", "3:2: the emitter `envmap` needs `filename` | "),
         ("<shape kind='cube'/>", "3:2: `shape` needs the attribute `type` | "),
         ("<shape type='cube' tpye='x'/>", "3:20: `shape` has no attribute `tpye` | did you mean `type`?"),
         ("<shape type='cube'><ref id='no'/></shape>", "3:29: no object has the id `no` | give the object"),

@@ -2,7 +2,7 @@
 
 use super::{Bvh, Leaves, Node, Stream, Tally, Way, cost::Cost, entry::Segments, occluder::Occluder};
 use crate::geometry::{Ray, RayLanes, Rayx8};
-use crate::simd::{LANES, Mask, Mask8, Vec3x8};
+use crate::simd::{LANES, Mask, Mask8, Real, Vec3x8, transpose};
 
 /// Packets in a run.
 pub(super) const PACKETS: usize = 8;
@@ -13,7 +13,8 @@ const TILE_SPREAD: f32 = 0.35;
 /// Occlusion rays up to this one may go as packets: most are blocked after a few nodes, which a wave can't
 /// make up for its setting up.
 const PACKET_SPREAD: f32 = 1.2;
-/// One run in so many goes the way that has cost more, to see whether it still does.
+/// One run in so many goes the way that has cost more, to see whether it still does; in twice as many if that
+/// has cost twice as much.
 const PROBE: u32 = 64;
 
 /// Up to sixty-four neighbours.
@@ -71,13 +72,19 @@ impl Run {
         let mut low = Vec3x8::splat(glam::Vec3::INFINITY);
         let mut high = Vec3x8::splat(glam::Vec3::NEG_INFINITY);
         for (rays, &active) in self.rays.iter().zip(&self.active) {
-            low = Vec3x8::select(active, rays.dir.min(low), low);
-            high = Vec3x8::select(active, rays.dir.max(high), high);
+            if active.all() {
+                (low, high) = (rays.dir.min(low), rays.dir.max(high));
+            } else {
+                low = Vec3x8::select(active, rays.dir.min(low), low);
+                high = Vec3x8::select(active, rays.dir.max(high), high);
+            }
         }
-        let axes = [(low.x, high.x), (low.y, high.y), (low.z, high.z)];
+        // Six minima over lanes by one transposition.
+        let [low, high] = [low, -high].map(|v| [v.x, v.y, v.z]);
+        let rows = transpose([low[0], low[1], low[2], low[2], high[0], high[1], high[2], high[2]]);
+        let [lx, ly, lz, _, hx, hy, hz, _] = rows.into_iter().reduce(Real::min)?.to_array();
         let (mut diagonal, mut length) = (0.0, 0.0);
-        for (low, high) in axes {
-            let (low, high) = (low.reduce_min(), high.reduce_max());
+        for (low, high) in [(lx, -hx), (ly, -hy), (lz, -hz)] {
             if low < 0.0 && high > 0.0 {
                 return None;
             }
@@ -112,9 +119,15 @@ struct Habit {
 
 impl Habit {
     fn choose_together(&mut self) -> bool {
-        let cheaper = self.alone == 0.0 || self.together <= self.alone;
-        self.turn = (self.turn + 1) % PROBE;
-        if self.turn == 1 { !cheaper } else { cheaper }
+        let (less, more) = (self.together.min(self.alone), self.together.max(self.alone));
+        let cheaper = less == 0.0 || self.together <= self.alone;
+        // The dearer the other way, the less often it is worth a try.
+        self.turn += 1;
+        if self.turn as f32 * less < (PROBE as f32) * more {
+            return cheaper;
+        }
+        self.turn = 0;
+        !cheaper
     }
 }
 

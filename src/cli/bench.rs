@@ -13,9 +13,9 @@ use super::{
     quality::QualityOption,
     source::{Source, definition},
     threads,
+    way::WayName,
 };
 use crate::{
-    bvh::Way,
     compile::{Scene, compile_with},
     geometry::ray_file::{RayFile, encode},
     load::load_mesh,
@@ -61,6 +61,10 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "K", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     repeat: u32,
 
+    /// How the rays go through the tree; the answers stay the same to the bit
+    #[arg(long, value_name = "WAY", default_value = "chosen")]
+    way: WayName,
+
     #[command(flatten)]
     quality: QualityOption,
 
@@ -100,7 +104,7 @@ impl Arguments {
     }
 
     fn measure(&self, scene: &Scene, class: &RayClass, invalid: u64) -> Result<(), Failure> {
-        let packets = measure::packets(scene, class, self.repeat);
+        let packets = measure::packets_by(scene, class, self.way.into(), self.repeat);
         let mut row = Row::new(class, invalid, packets, scene.summary());
         if self.json {
             return console::print_json_line(&row);
@@ -109,7 +113,7 @@ impl Arguments {
         if (packets.hits, packets.t_sum.to_bits()) != (singles.hits, singles.t_sum.to_bits()) {
             warn_of(format!("{}: packets and single rays differ; please report it", class.name));
         }
-        let counts = measure::count_packets(scene, class, Way::Chosen);
+        let counts = measure::count_packets(scene, class, self.way.into());
         row.compare(singles, counts, measure::count_singles(scene, class));
         console::print(&row.to_string())
     }

@@ -109,9 +109,11 @@ impl Info {
             looking: sensor.to_world.matrix3.z_axis.normalize_or_zero().to_array(),
             integrator: IntegratorName::from(&description.integrator).to_string(),
             max_depth: match description.integrator {
-                Integrator::Path { max_depth, .. } => max_depth,
+                Integrator::Path { max_depth, .. } | Integrator::Irradiance { max_depth, .. } => max_depth,
                 Integrator::Whitted { max_depth } => Some(max_depth),
-                Integrator::Direct { .. } | Integrator::Aov { .. } => None,
+                Integrator::Direct { .. } | Integrator::AmbientOcclusion { .. } | Integrator::Aov { .. } => {
+                    None
+                }
             },
             lanes: cpu::compiled(),
         }

@@ -3,20 +3,25 @@
 //! The only room that prints. stdout holds what was asked for, stderr everything else.
 
 mod bench;
+mod brdf;
 mod console;
+mod envmap;
 pub mod exit;
 mod failure;
 mod info;
 mod memory;
+mod meter;
 mod output;
 mod overrides;
 mod progress;
 mod quality;
 mod quantity;
 mod render;
+mod replay;
 mod report;
 mod source;
 mod threads;
+mod way;
 
 use std::{process::ExitCode, sync::LazyLock};
 
@@ -34,10 +39,13 @@ Examples:
   packlight render bunny.obj -o normals.exr --integrator aov
   packlight info scenes/cornell.xml --json
   packlight bench gen:terrain:1M --threads 1
+  packlight brdf roughconductor:alpha=0.3,material=Au -o lobe.svg
+  packlight meter scenes/cornell.xml --at 0,0,0 --normal 0,1,0
+  packlight envmap sky.exr --sh -o sky.json
 
 Exit codes:
   0  done
-  1  a file could not be read, understood or written
+  1  a file could not be read, understood or written, or a model failed its check
   2  the command line was not understood
   3  this processor lacks instructions that the program was compiled to use";
 
@@ -57,6 +65,12 @@ enum Command {
     Info(info::Arguments),
     /// Measure how fast rays are traced
     Bench(bench::Arguments),
+    /// Plot a reflection model, or prove that it is one
+    Brdf(Box<brdf::Arguments>),
+    /// Measure the irradiance at a point
+    Meter(meter::Arguments),
+    /// Reduce an environment to nine coefficients
+    Envmap(envmap::Arguments),
 }
 
 /// Reads the command line, does what it says, and returns one of the codes in [`exit`].
@@ -67,6 +81,9 @@ pub fn run() -> ExitCode {
         Command::Render(arguments) => render::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
+        Command::Brdf(arguments) => brdf::run(&arguments),
+        Command::Meter(arguments) => meter::run(&arguments),
+        Command::Envmap(arguments) => envmap::run(&arguments),
     });
     match done {
         Ok(()) => ExitCode::from(exit::SUCCESS),

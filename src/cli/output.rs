@@ -30,30 +30,35 @@ impl Output {
         Ok(Self { path, format })
     }
 
-    /// Whether the file could be written now: an hour of rendering should not end in a mistyped
-    /// folder. Leaves nothing behind.
+    /// [`check_writable`].
     pub(super) fn check(&self) -> Result<(), Failure> {
-        let shown = self.path.display();
-        if self.path.is_dir() {
-            return Err(Failure::Sentence(format!("{shown} is a folder; name a file in it")));
-        }
-        let folder = self.folder();
-        if !folder.is_dir() {
-            let folder = folder.display();
-            return Err(Failure::Sentence(format!("{shown}: there is no folder {folder}; create it first")));
-        }
-        // Permission bits don't tell: read-only mounts, quotas and access lists do.
-        let probe = folder.join(format!(".packlight-{}.probe", process::id()));
-        File::create(&probe).and_then(|_| fs::remove_file(&probe)).map_err(|error| {
-            Failure::Sentence(format!("{shown}: can't write into {}: {error}", folder.display()))
-        })
+        check_writable(&self.path)
     }
+}
 
-    fn folder(&self) -> &Path {
-        match self.path.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder,
-            _ => Path::new("."),
-        }
+/// Whether a file could be written now: an hour of rendering should not end in a mistyped folder. Leaves
+/// nothing behind.
+pub(super) fn check_writable(path: &Path) -> Result<(), Failure> {
+    let shown = path.display();
+    if path.is_dir() {
+        return Err(Failure::Sentence(format!("{shown} is a folder; name a file in it")));
+    }
+    let folder = folder(path);
+    if !folder.is_dir() {
+        let folder = folder.display();
+        return Err(Failure::Sentence(format!("{shown}: there is no folder {folder}; create it first")));
+    }
+    // Permission bits don't tell: read-only mounts, quotas and access lists do.
+    let probe = folder.join(format!(".packlight-{}.probe", process::id()));
+    File::create(&probe).and_then(|_| fs::remove_file(&probe)).map_err(|error| {
+        Failure::Sentence(format!("{shown}: can't write into {}: {error}", folder.display()))
+    })
+}
+
+fn folder(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
     }
 }
 
@@ -73,8 +78,8 @@ mod tests {
 
     #[test]
     fn a_bare_name_is_written_here() {
-        assert_eq!(Output::parse("a.exr").unwrap().folder(), Path::new("."));
-        assert_eq!(Output::parse("b/a.exr").unwrap().folder(), Path::new("b"));
+        assert_eq!(folder(Path::new("a.exr")), Path::new("."));
+        assert_eq!(folder(Path::new("b/a.exr")), Path::new("b"));
     }
 
     #[test]

@@ -22,7 +22,11 @@ pub(super) enum IntegratorName {
     Direct,
     /// Direct light, mirrors and glass
     Whitted,
-    /// Depth, position, uv and normals in place of light; .exr only
+    /// Ambient occlusion: how much of the sky is open
+    Ao,
+    /// Irradiance of what is seen, in W/m²
+    Irradiance,
+    /// Depth, normals, ids, heat maps of the tree and more in place of light; .exr only
     Aov,
 }
 
@@ -32,6 +36,8 @@ impl From<&Integrator> for IntegratorName {
             Integrator::Path { .. } => Self::Path,
             Integrator::Direct { .. } => Self::Direct,
             Integrator::Whitted { .. } => Self::Whitted,
+            Integrator::AmbientOcclusion { .. } => Self::Ao,
+            Integrator::Irradiance { .. } => Self::Irradiance,
             Integrator::Aov { .. } => Self::Aov,
         }
     }
@@ -43,6 +49,8 @@ impl fmt::Display for IntegratorName {
             Self::Path => "path",
             Self::Direct => "direct",
             Self::Whitted => "whitted",
+            Self::Ao => "ao",
+            Self::Irradiance => "irradiance",
             Self::Aov => "aov",
         })
     }
@@ -79,17 +87,20 @@ fn named(name: IntegratorName, replaced: &Integrator) -> Integrator {
         Integrator::Path { max_depth, hide_emitters, .. } => (max_depth, hide_emitters),
         Integrator::Direct { hide_emitters } => (None, hide_emitters),
         Integrator::Whitted { max_depth } => (Some(max_depth), false),
-        Integrator::Aov { .. } => (None, false),
+        Integrator::Irradiance { max_depth, .. } => (max_depth, false),
+        Integrator::AmbientOcclusion { .. } | Integrator::Aov { .. } => (None, false),
     };
     match name {
         IntegratorName::Path => Integrator::Path { max_depth, rr_depth: 5, hide_emitters },
         IntegratorName::Direct => Integrator::Direct { hide_emitters },
         IntegratorName::Whitted => Integrator::Whitted { max_depth: max_depth.unwrap_or(WHITTED_DEPTH) },
+        IntegratorName::Ao => Integrator::AmbientOcclusion { distance: f32::INFINITY },
+        IntegratorName::Irradiance => Integrator::Irradiance { max_depth, rr_depth: 5 },
         IntegratorName::Aov => Integrator::Aov { channels: every_channel() },
     }
 }
 
-/// Named as Mitsuba names the kinds.
+/// Named as a scene file names the kinds.
 fn every_channel() -> Vec<AovChannel> {
     [
         ("depth", Aov::Depth),
@@ -97,6 +108,11 @@ fn every_channel() -> Vec<AovChannel> {
         ("uv", Aov::Uv),
         ("geo_normal", Aov::GeoNormal),
         ("sh_normal", Aov::ShNormal),
+        ("directional_albedo", Aov::DirectionalAlbedo),
+        ("material_id", Aov::MaterialId),
+        ("primitive_id", Aov::PrimitiveId),
+        ("nodes", Aov::Nodes),
+        ("primitives", Aov::Primitives),
     ]
     .map(|(name, kind)| AovChannel { name: name.into(), kind })
     .into()
@@ -224,6 +240,6 @@ mod tests {
         let Integrator::Aov { channels } = switched(IntegratorName::Aov, Integrator::default()) else {
             panic!("not aov");
         };
-        assert_eq!(channels.len(), 5);
+        assert_eq!(channels.len(), 10);
     }
 }

@@ -12,6 +12,7 @@ use super::{
     overrides::{IntegratorName, MAX_SIDE, Overrides},
     progress::Bar,
     quality::QualityOption,
+    replay::{self, Replay},
     report::{Report, Sources},
     source::Source,
     threads,
@@ -20,6 +21,7 @@ use crate::{
     compile::compile_with,
     picture::{Format, Preview, save},
     render::{self, Settings},
+    scene::Film,
 };
 
 const PICTURE: &str = "Picture";
@@ -32,8 +34,8 @@ pub(super) struct Arguments {
     source: Source,
 
     /// Picture to write: .exr (linear, all channels), .hdr (linear) or .png (8-bit sRGB)
-    #[arg(short, long, value_name = "OUT", value_parser = Output::parse)]
-    output: Output,
+    #[arg(short, long, value_name = "OUT", value_parser = Output::parse, required_unless_present = "pixel")]
+    output: Option<Output>,
 
     /// How light is transported, in place of what the scene says
     #[arg(long, value_name = "NAME", help_heading = PICTURE)]
@@ -58,6 +60,14 @@ pub(super) struct Arguments {
     /// Stops by which a .png is brightened
     #[arg(long, value_name = "STOPS", help_heading = PICTURE, allow_negative_numbers = true, value_parser = stops)]
     exposure: Option<f32>,
+
+    /// In place of a picture, the numbers of this pixel's samples
+    #[arg(long, value_name = "X,Y", conflicts_with = "output", value_parser = replay::pixel)]
+    pixel: Option<[u32; 2]>,
+
+    /// Only this sample of the pixel, from 0
+    #[arg(long, value_name = "N", requires = "pixel")]
+    sample: Option<u32>,
 
     /// Threads; one a core if not given
     #[arg(long, value_name = "N", help_heading = MACHINE, value_parser = threads::count())]
@@ -91,8 +101,18 @@ enum Backend {
 
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    arguments.output.check()?;
-    let report = threads::pool(arguments.threads)?.install(|| picture(arguments))?;
+    let pool = threads::pool(arguments.threads)?;
+    if let Some(pixel) = arguments.pixel {
+        let replay = pool.install(|| numbers(arguments, pixel))?;
+        return if arguments.json {
+            console::print_json(&replay)
+        } else {
+            console::print(&replay.to_string())
+        };
+    }
+    let Some(output) = &arguments.output else { return Ok(()) };
+    output.check()?;
+    let report = pool.install(|| picture(arguments, output))?;
 
     if let Some(warning) = report.warning() {
         warn_of(warning);
@@ -106,12 +126,26 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
+/// Load, compile, and one pixel by itself.
+fn numbers(arguments: &Arguments, pixel: [u32; 2]) -> Result<Replay, Failure> {
+    let (mut description, _) = arguments.source.load()?;
+    arguments.overrides().apply(&mut description);
+    let Film { width, height, .. } = description.sensor.film;
+    if pixel[0] >= width || pixel[1] >= height {
+        let message = format!("--pixel is outside of the picture, which has {width} x {height} pixels");
+        return Err(Cli::command().error(ErrorKind::ValueValidation, message).into());
+    }
+    let scene = compile_with(&description, arguments.quality.quality())?;
+    let name = arguments.source.path.display().to_string();
+    Ok(Replay::new(&scene, name, &arguments.settings(), pixel, arguments.sample))
+}
+
 /// Load, compile, render, save.
-fn picture(arguments: &Arguments) -> Result<Report, Failure> {
+fn picture(arguments: &Arguments, output: &Output) -> Result<Report, Failure> {
     let (mut description, load_time) = arguments.source.load()?;
     arguments.overrides().apply(&mut description);
-    arguments.can_hold(IntegratorName::from(&description.integrator))?;
-    if arguments.exposure.is_some() && arguments.output.format != Format::Png {
+    can_hold(output.format, IntegratorName::from(&description.integrator))?;
+    if arguments.exposure.is_some() && output.format != Format::Png {
         warn_of("--exposure only changes a .png; the numbers of this file stay linear");
     }
 
@@ -125,11 +159,12 @@ fn picture(arguments: &Arguments) -> Result<Report, Failure> {
         rendered.statistics.time = start.elapsed();
     }
     let preview = Preview { exposure: arguments.exposure.unwrap_or(0.0) };
-    save(&rendered.picture, &arguments.output.path, preview)?;
+    save(&rendered.picture, &output.path, preview)?;
 
     Ok(Report::from(Sources {
         scene: arguments.source.path.display().to_string(),
-        output: arguments.output.path.display().to_string(),
+        output: output.path.display().to_string(),
+        options: arguments.options(),
         description: &description,
         settings,
         summary: scene.summary(),
@@ -138,6 +173,15 @@ fn picture(arguments: &Arguments) -> Result<Report, Failure> {
         threads: rayon::current_num_threads(),
         peak_memory: memory::peak(),
     }))
+}
+
+/// Named channels fit nowhere but into an EXR.
+fn can_hold(format: Format, integrator: IntegratorName) -> Result<(), Failure> {
+    if integrator != IntegratorName::Aov || format == Format::Exr {
+        return Ok(());
+    }
+    let message = "the aov integrator writes named channels, which only an .exr can hold";
+    Err(Cli::command().error(ErrorKind::ArgumentConflict, message).into())
 }
 
 impl Arguments {
@@ -159,13 +203,20 @@ impl Arguments {
         Settings { backend, sort: !self.no_sort }
     }
 
-    /// Named channels fit nowhere but into an EXR.
-    fn can_hold(&self, integrator: IntegratorName) -> Result<(), Failure> {
-        if integrator != IntegratorName::Aov || self.output.format == Format::Exr {
-            return Ok(());
-        }
-        let message = "the aov integrator writes named channels, which only an .exr can hold";
-        Err(Cli::command().error(ErrorKind::ArgumentConflict, message).into())
+    /// What of the command line decides the picture, as it would be typed after the scene.
+    fn options(&self) -> String {
+        let option = |name: &str, value: Option<String>| value.map(|value| format!(" --{name} {value}"));
+        let number = |name: &str, value: Option<u32>| option(name, value.map(|value| value.to_string()));
+        [
+            Some(self.source.options()).filter(|options| !options.is_empty()),
+            option("integrator", self.integrator.map(|name| name.to_string())),
+            number("width", self.width),
+            number("height", self.height),
+            number("seed", self.seed),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
     }
 }
 

@@ -41,6 +41,8 @@ pub(super) struct Report {
     lane_use: LaneUse,
     invalid_samples: u64,
     first_invalid: Option<Sample>,
+    #[serde(skip)]
+    options: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     peak_memory_bytes: Option<u64>,
 }
@@ -70,6 +72,8 @@ struct Sample {
 pub(super) struct Sources<'a> {
     pub(super) scene: String,
     pub(super) output: String,
+    /// What decides the picture besides the scene, as typed.
+    pub(super) options: String,
     pub(super) description: &'a SceneDescription,
     pub(super) settings: Settings,
     pub(super) summary: Summary,
@@ -117,6 +121,7 @@ impl From<Sources<'_>> for Report {
             },
             invalid_samples: statistics.invalid_samples,
             first_invalid: statistics.first_invalid.map(|(x, y, sample)| Sample { x, y, sample }),
+            options: from.options,
             peak_memory_bytes: from.peak_memory,
         }
     }
@@ -132,7 +137,11 @@ impl Report {
         };
         Some(match self.first_invalid {
             Some(Sample { x, y, sample }) => {
-                format!("{what}; the first is sample {sample} of pixel ({x}, {y})")
+                let Self { scene, options, .. } = self;
+                format!(
+                    "{what}; the first is sample {sample} of pixel ({x}, {y}), which this shows by itself:\n  \
+                     packlight render {scene}{options} --pixel {x},{y} --sample {sample}"
+                )
             }
             None => what,
         })
@@ -201,6 +210,7 @@ mod tests {
         Report::from(Sources {
             scene: "box.xml".into(),
             output: "box.exr".into(),
+            options: " --seed 9".into(),
             description: &SceneDescription::default(),
             settings: Settings::default(),
             summary: Summary { triangles: 1234, lights: 1, ..Summary::default() },
@@ -243,6 +253,7 @@ mod tests {
         let counts =
             Statistics { invalid_samples: 2, first_invalid: Some((3, 4, 5)), ..Statistics::default() };
         let warning = report(counts).warning().unwrap();
-        assert!(warning.contains("2 samples") && warning.ends_with("sample 5 of pixel (3, 4)"), "{warning}");
+        assert!(warning.contains("2 samples") && warning.contains("sample 5 of pixel (3, 4)"), "{warning}");
+        assert!(warning.ends_with("packlight render box.xml --seed 9 --pixel 3,4 --sample 5"), "{warning}");
     }
 }

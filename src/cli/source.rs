@@ -31,6 +31,11 @@ impl Source {
         Self { path, defines }
     }
 
+    /// The definitions, as they were typed.
+    pub(super) fn options(&self) -> String {
+        self.defines.iter().map(|(name, value)| format!(" -D {name}={value}")).collect()
+    }
+
     /// Loads the scene and tells its warnings.
     pub(super) fn load(&self) -> Result<(SceneDescription, Duration), Failure> {
         let start = Instant::now();

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::material::{
-    Coat, Factor, Layer, MaterialId, MaterialRow, MaterialTable, MerlTable, Model, Step, Tables,
-    diffuse_reflectance,
+    Coat, CoatRange, Factor, Layer, MaterialId, MaterialRow, MaterialTable, MerlTable, Model, Ramp, Step,
+    Tables, diffuse_reflectance,
 };
 use crate::picture::Picture;
 use crate::scene::{self, Distribution, Material};
@@ -16,7 +16,7 @@ pub(super) fn compile(materials: &[Material]) -> (MaterialTable, TextureTable, V
     let rows = materials.iter().map(|material| compiler.row(material)).collect();
     let (table, ids) = {
         let coats = compiler.coats.into_iter().map(|(_, coat)| coat).collect();
-        MaterialTable::new(rows, Tables { coats, measured: compiler.measured })
+        MaterialTable::new(rows, Tables { coats, ramps: compiler.ramps, measured: compiler.measured })
     };
     (table, compiler.textures, ids)
 }
@@ -26,10 +26,13 @@ struct Compiler {
     textures: TextureTable,
     /// Pictures that several materials share are stored once.
     seen: Vec<(scene::Texture, TextureId)>,
-    /// Coats by distribution, α and η.
-    coats: Vec<((Distribution, f32, f32), Coat)>,
+    coats: Vec<(CoatKey, CoatRange)>,
+    ramps: Vec<Arc<Ramp>>,
     measured: Vec<Arc<MerlTable>>,
 }
+
+/// Distribution, α and η; no α is any α.
+type CoatKey = (Distribution, Option<f32>, f32);
 
 /// How a layer has been reached.
 #[derive(Clone, Default)]
@@ -146,7 +149,7 @@ impl Compiler {
                 nonlinear,
             } => {
                 let (diffuse, specular) = (self.add(diffuse), self.add(specular));
-                self.plastic(*roughness, int_ior / ext_ior, (diffuse, specular), *nonlinear)
+                self.plastic(roughness.as_ref(), int_ior / ext_ior, (diffuse, specular), *nonlinear)
             }
             Material::Principled(p) => Model::Principled {
                 base_color: self.add(&p.base_color),
@@ -173,7 +176,7 @@ impl Compiler {
             Material::Phong { diffuse_reflectance, specular_reflectance, exponent } => Model::Phong {
                 diffuse: self.add(diffuse_reflectance),
                 specular: self.add(specular_reflectance),
-                exponent: *exponent,
+                exponent: self.add(exponent),
             },
             Material::Ward { diffuse_reflectance, specular_reflectance, alpha_u, alpha_v } => Model::Ward {
                 diffuse: self.add(diffuse_reflectance),
@@ -181,8 +184,12 @@ impl Compiler {
                 alpha_u: self.add(alpha_u),
                 alpha_v: self.add(alpha_v),
             },
-            Material::Toon { reflectance, bands } => {
-                Model::Toon { reflectance: self.add(reflectance), bands: *bands }
+            Material::Toon { reflectance, ramp } => {
+                let place = self.ramps.iter().position(|known| known == ramp).unwrap_or_else(|| {
+                    self.ramps.push(Arc::clone(ramp));
+                    self.ramps.len() - 1
+                });
+                Model::Toon { reflectance: self.add(reflectance), ramp: place as u32 }
             }
             // Wrappers have been opened by `layers`.
             Material::TwoSided { .. }
@@ -195,7 +202,7 @@ impl Compiler {
 
     fn plastic(
         &mut self,
-        roughness: Option<(Distribution, f32)>,
+        roughness: Option<&(Distribution, scene::Texture)>,
         eta: f32,
         (diffuse, specular): (TextureId, TextureId),
         nonlinear: bool,
@@ -209,11 +216,20 @@ impl Compiler {
                 nonlinear,
             };
         };
-        let key = (distribution, alpha, eta);
+        let constant = match alpha {
+            scene::Texture::Constant(alpha) => Some(alpha.x),
+            _ => None,
+        };
+        let key = (*distribution, constant, eta);
         let place = self.coats.iter().position(|(known, _)| *known == key).unwrap_or_else(|| {
-            self.coats.push((key, Coat::new(distribution, alpha, eta)));
+            let coats = match constant {
+                Some(alpha) => CoatRange::from(Coat::new(*distribution, alpha, eta)),
+                None => CoatRange::of_any_roughness(*distribution, eta),
+            };
+            self.coats.push((key, coats));
             self.coats.len() - 1
         });
+        let (distribution, alpha) = (*distribution, self.add(alpha));
         Model::RoughPlastic { distribution, alpha, coat: place as u32, eta, diffuse, specular, nonlinear }
     }
 

@@ -13,13 +13,17 @@ mod surfaces;
 
 use std::time::{Duration, Instant};
 
+pub use lights::envmap;
 pub use primitives::Primitives;
 pub use surfaces::Surface;
+
+use glam::Vec3;
 
 use crate::bvh::{Bvh, Child, Quality, Reference};
 use crate::camera::Camera;
 use crate::film::Filter;
-use crate::light::{Light, LightId};
+use crate::geometry::Aabb;
+use crate::light::{Light, LightChoice, LightId};
 use crate::material::MaterialTable;
 use crate::scene::{Film, Integrator, Projection, Sampler, SceneDescription, Sensor};
 use crate::texture::TextureTable;
@@ -34,8 +38,12 @@ pub struct Scene {
     pub(crate) materials: MaterialTable,
     pub(crate) textures: TextureTable,
     pub(crate) lights: Vec<Light>,
+    /// Which of them is sampled where one is.
+    pub(crate) light_choice: LightChoice,
     /// Lights that rays which leave the scene see.
     pub(crate) environments: Vec<LightId>,
+    /// Size of the bounds of everything that can be hit.
+    extent: Vec3,
     pub(crate) camera: Camera,
     pub(crate) filter: Filter,
     /// Size of the picture.
@@ -114,6 +122,10 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
     let triangles = surfaces.triangles.len() as u64 - degenerate;
     let quadrics = (surfaces.spheres.len() + surfaces.canonicals.len()) as u64;
 
+    let bounds = references.iter().fold(Aabb::EMPTY, |bounds, reference| bounds.union(reference.bounds));
+    let extent = (bounds.max - bounds.min).max(Vec3::ZERO);
+    let light_choice = lights::choice(&lights, 0.5 * extent.length());
+
     let start = Instant::now();
     let bvh = Bvh::build_with(references, quality);
     let primitives = Primitives::new(bvh.slots(), |id| surfaces.primitive(id));
@@ -130,7 +142,7 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
         bvh_time,
         quality,
     };
-    let environments = (0..lights.len()).filter(|&i| lights[i].environment().is_some());
+    let environments = (0..lights.len()).filter(|&i| lights[i].is_environment());
     let environments = environments.map(|i| LightId(i as u32)).collect();
     Ok(Scene {
         primitives,
@@ -139,7 +151,9 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
         materials,
         textures,
         lights,
+        light_choice,
         environments,
+        extent,
         camera: camera(&description.sensor),
         filter: filter::compile(description.sensor.film.filter),
         film: description.sensor.film,

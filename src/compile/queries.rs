@@ -1,5 +1,7 @@
 //! What a renderer asks of a scene.
 
+use glam::Vec3;
+
 use super::{Scene, Surface};
 use crate::bvh::{Hitx8, Stream, Tally, Tracer, Traversal, Way};
 use crate::geometry::{Hit, PrimitiveId, Ray, Rayx8};
@@ -67,6 +69,12 @@ impl Scene {
     /// The nearest hit of a ray by testing every primitive: what every other way must equal to the bit.
     pub fn brute_force(&self, ray: &Ray) -> Hit {
         self.primitives.brute_force(ray)
+    }
+
+    /// Size of the scene along each axis; 0 if it is empty.
+    #[inline]
+    pub fn extent(&self) -> Vec3 {
+        self.extent
     }
 
     /// The material of a primitive.

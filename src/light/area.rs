@@ -1,15 +1,15 @@
 //! Shapes that emit.
 //!
-//! The same radiance in all directions, on the side of the normal. A sphere is sampled by the cone it is
-//! seen in (density 1/(2π(1 − cos θ_max))), everything else uniformly by area; seen from distance d under
-//! the angle θ' at the light, a density 1/A per area is d²/(A cos θ') per solid angle.
+//! The same radiance in all directions, on the side of the normal. A sphere that shines outward is sampled by
+//! the cone it is seen in (density 1/(2π(1 − cos θ_max))), everything else uniformly by area; seen from
+//! distance d under the angle θ' at the light, a density 1/A per area is d²/(A cos θ') per solid angle.
 
 use std::f32::consts::PI;
 
 use glam::Vec3;
 
-use super::LightSample;
-use crate::geometry::{CanonicalKind, Sphere, Triangle, offset_origin};
+use super::{LightSample, Reach};
+use crate::geometry::{Aabb, CanonicalKind, Sphere, Triangle, offset_origin};
 use crate::math::{Frame, sin_cos_turns, warp};
 use crate::simd::{Mask, Real, Vector3, vector3};
 
@@ -83,6 +83,24 @@ impl Emitting {
         }
     }
 
+    /// (middle, radius) of a ball that holds the shape.
+    pub(super) fn ball(&self) -> (Vec3, f32) {
+        match self {
+            Self::Sphere(sphere) => (sphere.center, sphere.radius),
+            Self::Triangles { triangles, .. } => {
+                let bounds = triangles.iter().fold(Aabb::EMPTY, |bounds, t| bounds.union(t.bounds()));
+                (0.5 * (bounds.min + bounds.max), 0.5 * (bounds.max - bounds.min).length())
+            }
+            Self::Canonical { kind, axes: [x, y, z], origin, .. } => {
+                let along = if *kind == CanonicalKind::Cylinder { *z } else { Vec3::ZERO };
+                (
+                    *origin + 0.5 * along,
+                    (x.length_squared().max(y.length_squared()) + 0.25 * along.length_squared()).sqrt(),
+                )
+            }
+        }
+    }
+
     /// A point and its normal, uniform by area.
     #[inline]
     fn sample_area<R: Real>(&self, (u, v): (R, R)) -> (Vector3<R>, Vector3<R>) {
@@ -130,13 +148,15 @@ impl Emitting {
 }
 
 impl AreaLight {
+    /// π A L, W.
+    pub(super) fn power(&self) -> Vec3 {
+        PI * self.shape.area() * self.radiance
+    }
+
     /// Draws a point of the light as seen from `from`.
     #[inline]
     pub fn sample<R: Real>(&self, from: Vector3<R>, u: (R, R)) -> LightSample<R> {
-        let by_cone = match &self.shape {
-            Emitting::Sphere(sphere) => Some(sample_cone(sphere, from, u)),
-            _ => None,
-        };
+        let by_cone = self.seen_as_cone().map(|sphere| sample_cone(sphere, from, u));
         let (mut position, mut n_g) = self.shape.sample_area(u);
         let mut cone_pdf = R::zero();
         let mut outside = R::Mask::splat(false);
@@ -155,7 +175,7 @@ impl AreaLight {
         LightSample {
             wi,
             target: offset_origin(position, Vector3::splat(self.extent), n_g, -wi),
-            at_infinity: false,
+            reach: Reach::Target,
             weight: Vector3::splat(self.radiance).scale(R::one() / pdf),
             pdf,
             valid,
@@ -169,12 +189,21 @@ impl AreaLight {
         let squared = to.dot(to);
         let cos = (to.dot(point.n_g) / squared.sqrt()).abs();
         let by_area = squared / (cos * R::splat(self.shape.area()));
-        match &self.shape {
-            Emitting::Sphere(sphere) => {
+        match self.seen_as_cone() {
+            Some(sphere) => {
                 let (outside, one_minus_cos_max) = seen_from(sphere, from);
                 R::select(outside, warp::cone_pdf(one_minus_cos_max), by_area)
             }
-            _ => by_area,
+            None => by_area,
+        }
+    }
+
+    /// The sphere that shines outward. One that shines inward lights its own inside, whose points are outside
+    /// of it as often as rounding has it so.
+    fn seen_as_cone(&self) -> Option<&Sphere> {
+        match &self.shape {
+            Emitting::Sphere(sphere) if self.side > 0.0 => Some(sphere),
+            _ => None,
         }
     }
 }

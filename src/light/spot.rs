@@ -27,6 +27,11 @@ impl Spot {
         Self { position, direction, intensity, cutoff_angle, falloff }
     }
 
+    /// Within the beam, W/sr.
+    pub(super) fn intensity_on_axis(&self) -> Vec3 {
+        self.intensity
+    }
+
     /// Radiant intensity towards a receiver that sees the light along `wi`.
     #[inline]
     pub fn intensity<R: Real>(&self, wi: Vector3<R>) -> Vector3<R> {

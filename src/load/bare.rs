@@ -227,8 +227,11 @@ mod tests {
         let (scene, warnings) = scene(&[("a.obj", &format!("{TRIANGLES}{faces}")), ("a.mtl", library)]);
         let green = Texture::Constant(Rgb::new(0.0, 1.0, 0.0));
         assert_eq!(front(&scene.materials[0]), &Material::Diffuse { reflectance: green });
-        let Material::Phong { diffuse_reflectance, specular_reflectance, exponent: 30.0 } =
-            front(&scene.materials[1])
+        let Material::Phong {
+            diffuse_reflectance,
+            specular_reflectance,
+            exponent: Texture::Constant(Rgb { x: 30.0, .. }),
+        } = front(&scene.materials[1])
         else {
             panic!("{:?} is not Phong", scene.materials[1])
         };

@@ -1,6 +1,8 @@
 //! Files to a [`SceneDescription`]: the door at which bad numbers stop.
 
 mod bare;
+mod brdf;
+mod cie;
 mod error;
 pub mod generate;
 mod mitsuba;
@@ -10,13 +12,15 @@ mod obj_materials;
 mod obj_text;
 mod ply;
 mod serialized;
+pub mod sh;
+mod spectrum;
 mod text;
 
 use std::path::Path;
 
 pub use error::{LoadError, Warning};
 
-use crate::scene::{Mesh, SceneDescription};
+use crate::scene::{Material, Mesh, SceneDescription};
 
 /// What the command line may say about a file.
 #[derive(Clone, Debug, Default)]
@@ -48,6 +52,33 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
         Kind::Other(extension) => return Err(unknown(path, &extension)),
     };
     Ok(Loaded { description, warnings })
+}
+
+/// Reads a material written on a line, `plugin:name=value,…`, as in
+/// `roughconductor:alpha=0.3,material=Au`; a colour is three numbers with blanks between them.
+///
+/// # Errors
+/// [`LoadError`] with the column in the line.
+pub fn read_material(line: &str) -> Result<(Material, Vec<Warning>), LoadError> {
+    mitsuba::read_line(line)
+}
+
+/// Loads the material that has an id in a scene file, or that of the shape that has it.
+///
+/// # Errors
+/// [`LoadError`] as for [`load`], and if the id is not there.
+pub fn load_material(
+    path: &Path,
+    id: &str,
+    options: &LoadOptions,
+) -> Result<(Material, Vec<Warning>), LoadError> {
+    match Kind::of(path) {
+        Kind::Mitsuba => mitsuba::read_by_id(path, &options.defines, id),
+        Kind::Other(extension) => Err(unknown(path, &extension)),
+        Kind::Mesh | Kind::Generated(_) => {
+            Err(LoadError::new(path, "a bare mesh has no ids").help("name a scene in Mitsuba 3 `.xml`"))
+        }
+    }
 }
 
 /// Loads all triangles of a mesh, `.obj`, `.ply` or `gen:`, as one; materials are ignored.

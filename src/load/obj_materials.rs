@@ -90,7 +90,7 @@ fn reflection(mtl: &MtlMaterial, picture: Option<Arc<Picture>>) -> Material {
     Material::Phong {
         diffuse_reflectance: texture(kd, picture, scale),
         specular_reflectance: Texture::Constant(mtl.ks * scale),
-        exponent: mtl.ns,
+        exponent: Texture::Constant(Rgb::splat(mtl.ns)),
     }
 }
 

@@ -73,7 +73,7 @@ pub enum Bsdf<'t, R: Real> {
     /// Diffuse and a Gaussian of slopes.
     Ward(Ward<R>),
     /// Bands of light.
-    Toon(Toon<R>),
+    Toon(Toon<'t, R>),
     /// Microfacets of metal.
     RoughConductor(RoughConductor<R>),
     /// Microfacets over a diffuse base.

@@ -48,6 +48,75 @@ impl Coat {
     }
 }
 
+/// The coats of a material: one, or several over α where that is a texture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CoatRange(Vec<Coat>);
+
+/// Roughnesses of a range, at the squares of equal steps from 0 to 1: coats change fastest when smooth.
+const RANGE: usize = 17;
+
+impl From<Coat> for CoatRange {
+    /// The same roughness everywhere.
+    fn from(coat: Coat) -> Self {
+        Self(vec![coat])
+    }
+}
+
+impl CoatRange {
+    /// For α in [0, 1]; rougher ones are as the roughest.
+    pub fn of_any_roughness(distribution: Distribution, eta: f32) -> Self {
+        let root = |i: usize| i as f32 / (RANGE - 1) as f32;
+        Self((0..RANGE).map(|i| Coat::new(distribution, (root(i) * root(i)).max(1e-4), eta)).collect())
+    }
+
+    /// The coats of each lane's α.
+    #[inline]
+    pub fn at<R: Real>(&self, alpha: R) -> CoatAt<'_, R> {
+        let place = match &self.0[..] {
+            [_] => R::zero(),
+            coats => alpha.clamp(0.0, 1.0).sqrt() * R::splat((coats.len() - 1) as f32),
+        };
+        CoatAt { coats: &self.0, place }
+    }
+}
+
+/// The coat of each lane, linear between those of a range.
+#[derive(Clone, Copy, Debug)]
+pub struct CoatAt<'t, R> {
+    coats: &'t [Coat],
+    place: R,
+}
+
+impl<R: Real> CoatAt<'_, R> {
+    /// T at a cosine in [0, 1].
+    #[inline]
+    pub fn transmittance(&self, cos: R) -> R {
+        match self.coats {
+            [coat] => coat.transmittance(cos),
+            coats => self.between(coats, |coat, i| coat.transmittance(cos.lane(i))),
+        }
+    }
+
+    /// Reflectance for diffuse light from below.
+    #[inline]
+    pub fn internal(&self) -> R {
+        match self.coats {
+            [coat] => R::splat(coat.internal),
+            coats => self.between(coats, |coat, _| coat.internal),
+        }
+    }
+
+    #[inline]
+    fn between(&self, coats: &[Coat], value: impl Fn(&Coat, usize) -> f32) -> R {
+        R::from_fn(|i| {
+            let place = self.place.lane(i);
+            let cell = (place as usize).min(coats.len() - 2);
+            let (low, high) = (value(&coats[cell], i), value(&coats[cell + 1], i));
+            low + (high - low) * (place - cell as f32)
+        })
+    }
+}
+
 /// What single scattering reflects and what it lets through: visible normals, weighted by F G1(wi) and by
 /// (1 − F) G1(wi). What is left of 1 is masked.
 fn scattered(distribution: Distribution, alpha: f32, eta: f32, cos: f32) -> (f32, f32) {

@@ -24,8 +24,7 @@ mod model;
 mod phong;
 mod plastic;
 mod principled;
-#[cfg(test)]
-mod proof;
+pub mod proof;
 mod rough_conductor;
 mod rough_dielectric;
 mod rough_plastic;
@@ -36,7 +35,7 @@ mod ward;
 
 pub use appearance::{Appearance, Point};
 pub use bsdf::{Branch, Bsdf, Sample};
-pub use coat::{Coat, diffuse_reflectance};
+pub use coat::{Coat, CoatRange, diffuse_reflectance};
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use lambert::Lambert;
@@ -50,5 +49,5 @@ pub use rough_conductor::RoughConductor;
 pub use rough_dielectric::RoughDielectric;
 pub use rough_plastic::RoughPlastic;
 pub use table::{Factor, Layer, MaterialId, MaterialRow, MaterialTable, Relief, Step, Tables};
-pub use toon::Toon;
+pub use toon::{Ramp, Stop, Toon};
 pub use ward::Ward;

@@ -14,11 +14,11 @@ pub enum Model {
     /// [`Lambert`].
     Lambert { reflectance: TextureId },
     /// [`Phong`].
-    Phong { diffuse: TextureId, specular: TextureId, exponent: f32 },
+    Phong { diffuse: TextureId, specular: TextureId, exponent: TextureId },
     /// [`Ward`].
     Ward { diffuse: TextureId, specular: TextureId, alpha_u: TextureId, alpha_v: TextureId },
-    /// [`Toon`].
-    Toon { reflectance: TextureId, bands: u32 },
+    /// [`Toon`]; `ramp` is a place in the table's ramps.
+    Toon { reflectance: TextureId, ramp: u32 },
     /// [`RoughConductor`].
     RoughConductor {
         distribution: Distribution,
@@ -31,7 +31,7 @@ pub enum Model {
     /// [`RoughPlastic`]; `coat` is a place in the table's coats.
     RoughPlastic {
         distribution: Distribution,
-        alpha: f32,
+        alpha: TextureId,
         coat: u32,
         eta: f32,
         diffuse: TextureId,
@@ -124,13 +124,13 @@ impl Model {
             Self::Phong { diffuse, specular, exponent } => Bsdf::Phong(Phong {
                 diffuse: color(diffuse),
                 specular: color(specular),
-                exponent: R::splat(exponent),
+                exponent: number(exponent),
             }),
             Self::Ward { diffuse, specular, alpha_u, alpha_v } => {
                 Bsdf::Ward(Ward::new(color(diffuse), color(specular), number(alpha_u), number(alpha_v)))
             }
-            Self::Toon { reflectance, bands } => {
-                Bsdf::Toon(Toon { reflectance: color(reflectance), bands: R::splat(bands as f32) })
+            Self::Toon { reflectance, ramp } => {
+                Bsdf::Toon(Toon { reflectance: color(reflectance), ramp: &tables.ramps[ramp as usize] })
             }
             Self::RoughConductor { distribution, alpha_u, alpha_v, eta, k, reflectance } => {
                 Bsdf::RoughConductor(RoughConductor {
@@ -141,15 +141,15 @@ impl Model {
                 })
             }
             Self::RoughPlastic { distribution, alpha, coat, eta, diffuse, specular, nonlinear } => {
-                let coat = &tables.coats[coat as usize];
-                let alpha = R::splat(alpha);
+                let alpha = number(alpha);
+                let coat = tables.coats[coat as usize].at(alpha);
                 Bsdf::RoughPlastic(RoughPlastic {
                     surface: Microfacet::new(distribution, alpha, alpha),
                     coat,
                     base: Base {
                         diffuse: color(diffuse),
                         eta: R::splat(eta),
-                        internal: R::splat(coat.internal),
+                        internal: coat.internal(),
                         nonlinear,
                     },
                     specular: color(specular),

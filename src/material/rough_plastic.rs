@@ -5,11 +5,11 @@
 //! ```
 //!
 //! T(θ) is what single scattering lets through the coat, R_int what it reflects of diffuse light from
-//! below. Both come from a table, one a material.
+//! below. Both come from a table, one a material; where α is a texture, from several over α.
 
 use super::{
     Sample,
-    coat::Coat,
+    coat::CoatAt,
     fresnel,
     lambert::above,
     microfacet::Microfacet,
@@ -25,7 +25,7 @@ pub struct RoughPlastic<'t, R> {
     /// The coat's microfacets.
     pub surface: Microfacet<R>,
     /// What the coat lets through.
-    pub coat: &'t Coat,
+    pub coat: CoatAt<'t, R>,
     /// The base.
     pub base: Base<R>,
     /// Factor on what the coat reflects.

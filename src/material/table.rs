@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use super::{Appearance, Coat, MerlTable, Model, appearance::Point};
+use super::{Appearance, CoatRange, MerlTable, Model, Ramp, appearance::Point};
 use crate::simd::Real;
 use crate::texture::{TextureId, TextureTable};
 
@@ -110,7 +110,9 @@ pub struct MaterialTable {
 #[derive(Clone, Debug, Default)]
 pub struct Tables {
     /// Of rough plastics.
-    pub coats: Vec<Coat>,
+    pub coats: Vec<CoatRange>,
+    /// Of toons.
+    pub ramps: Vec<Arc<Ramp>>,
     /// Of measured materials.
     pub measured: Vec<Arc<MerlTable>>,
 }

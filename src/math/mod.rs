@@ -8,12 +8,14 @@ mod elementary;
 mod erf;
 mod frame;
 mod sampler;
+mod sh;
 pub mod warp;
 
 pub use elementary::{acos, atan2, exp, exp2, ln, log2, pow, sin_cos_turns};
 pub use erf::{erf, erf_inv};
 pub use frame::Frame;
 pub use sampler::{PathKey, Sampler};
+pub use sh::{sh_basis, sh_cosine};
 
 /// 1/π.
 pub const INV_PI: f32 = std::f32::consts::FRAC_1_PI;

@@ -60,7 +60,11 @@ pub fn save(picture: &Picture, path: &Path, preview: Preview) -> Result<(), Pict
     write_whole(path, &bytes).map_err(|source| PictureError::Io { path: path.into(), source })
 }
 
-fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+/// Writes the bytes of any file as [`save`] does: under its name there is always a whole file.
+///
+/// # Errors
+/// What the system says.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut file = temporary_in(folder)?;
     file.write_all(bytes)?;
@@ -129,10 +133,17 @@ fn encode_hdr(picture: &Picture) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-fn encode_png(picture: &Picture, preview: Preview) -> Result<Vec<u8>, String> {
+/// The pixels as a PNG has them: 8-bit sRGB, row by row.
+///
+/// # Errors
+/// A sentence, if the picture has no `R G B`.
+pub fn to_srgb(picture: &Picture, preview: Preview) -> Result<Vec<[u8; 3]>, String> {
     let scale = libm::exp2f(preview.exposure);
-    let pixels: Vec<u8> =
-        colours(picture, "PNG")?.flat_map(|rgb| rgb.map(|value| srgb::to_byte(value * scale))).collect();
+    Ok(colours(picture, "PNG")?.map(|rgb| rgb.map(|value| srgb::to_byte(value * scale))).collect())
+}
+
+fn encode_png(picture: &Picture, preview: Preview) -> Result<Vec<u8>, String> {
+    let pixels = to_srgb(picture, preview)?.into_flattened();
     let mut bytes = Vec::new();
     PngEncoder::new(&mut bytes)
         .write_image(&pixels, picture.width, picture.height, ExtendedColorType::Rgb8)

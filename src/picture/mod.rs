@@ -10,7 +10,7 @@ mod openexr;
 mod srgb;
 
 pub use decode::{Encoding, decode};
-pub use encode::{Format, Preview, encode, save};
+pub use encode::{Format, Preview, encode, save, to_srgb, write_whole};
 pub use error::PictureError;
 
 /// Planes of 32-bit floats, all of one size. Row 0 is the top.

@@ -1,10 +1,13 @@
 //! What the camera sees, in place of light: arbitrary output variables, averaged over the pixel.
 
-use super::integrator::{Integrator, Outgoing, Path};
+use super::integrator::{Integrator, Line, Outgoing, Path};
+use super::measure::Counts;
 use super::vertex::Vertex;
+use crate::bvh::Traversal;
 use crate::compile::Scene;
+use crate::geometry::Ray;
 use crate::scene::{Aov, AovChannel};
-use crate::simd::{Real, Vector3};
+use crate::simd::{LANES, Real, Vector3};
 
 /// Channels in the order of the description.
 pub(super) struct AovIntegrator {
@@ -15,6 +18,9 @@ fn suffixes(kind: Aov) -> &'static [&'static str] {
     match kind {
         Aov::Depth => &["T"],
         Aov::Uv => &["U", "V"],
+        Aov::DirectionalAlbedo => &["R", "G", "B"],
+        Aov::MaterialId | Aov::PrimitiveId => &["I"],
+        Aov::Nodes | Aov::Primitives => &["N"],
         Aov::Position | Aov::GeoNormal | Aov::ShNormal => &["X", "Y", "Z"],
     }
 }
@@ -29,10 +35,23 @@ impl Integrator for AovIntegrator {
         0
     }
 
-    fn miss<R: Real>(&self, _: &Scene, _: &Path<R>, _: Vector3<R>, _: &mut impl Outgoing<R>) {}
+    /// Nothing is 0, but for the way to it through the tree.
+    fn miss<R: Real>(&self, scene: &Scene, _: &Path<R>, ray: Line<R>, out: &mut impl Outgoing<R>) {
+        let counts = self.counts(scene, ray);
+        let mut channel = 0;
+        for c in &self.channels {
+            match c.kind {
+                Aov::Nodes => out.add(channel, counts.0),
+                Aov::Primitives => out.add(channel, counts.1),
+                _ => {}
+            }
+            channel += suffixes(c.kind).len();
+        }
+    }
 
-    fn shade<R: Real>(&self, _: &Scene, vertex: &Vertex<'_, R>, out: &mut impl Outgoing<R>) {
+    fn shade<R: Real>(&self, scene: &Scene, vertex: &Vertex<'_, R>, out: &mut impl Outgoing<R>) {
         let surface = &vertex.surface;
+        let counts = self.counts(scene, (vertex.from, vertex.dir));
         let mut channel = 0;
         let mut put = |values: &[R]| {
             for &value in values {
@@ -47,8 +66,33 @@ impl Integrator for AovIntegrator {
                 Aov::Position => put(&components(surface.position)),
                 Aov::GeoNormal => put(&components(surface.n_g)),
                 Aov::ShNormal => put(&components(surface.frame.n)),
+                Aov::DirectionalAlbedo => {
+                    let (lobe, _) = vertex.path.random(2, 1);
+                    put(&components(vertex.albedo(lobe, vertex.path.random(2, 0))));
+                }
+                Aov::MaterialId => put(&[R::splat(vertex.material.0 as f32 + 1.0)]),
+                Aov::PrimitiveId => put(&[R::from_int(vertex.primitive) + R::one()]),
+                Aov::Nodes => put(&[counts.0]),
+                Aov::Primitives => put(&[counts.1]),
             }
         }
+    }
+}
+
+impl AovIntegrator {
+    /// Nodes and primitives that rays are tested against, each by itself, if anyone asks: what packets do
+    /// depends on their neighbours.
+    fn counts<R: Real>(&self, scene: &Scene, (org, dir): Line<R>) -> (R, R) {
+        if !self.channels.iter().any(|c| matches!(c.kind, Aov::Nodes | Aov::Primitives)) {
+            return (R::zero(), R::zero());
+        }
+        let mut lanes = [Counts::default(); LANES];
+        for (i, counts) in lanes[..R::LANES].iter_mut().enumerate() {
+            let mut traversal = Traversal::new(Counts::default());
+            scene.closest_hit(&Ray::new(org.lane(i), dir.lane(i), 0.0, f32::INFINITY), &mut traversal);
+            *counts = traversal.tally;
+        }
+        (R::from_fn(|i| lanes[i].nodes as f32), R::from_fn(|i| lanes[i].primitives as f32))
     }
 }
 

@@ -7,10 +7,10 @@
 //! Each light is sampled once, the BSDF once, and both estimates are combined by the power heuristic
 //! \[VG95\]. Mirrors and glass show lights, nothing else.
 
-use super::integrator::{Integrator, Outgoing, Path, add_rgb};
-use super::vertex::{Vertex, environment};
+use super::integrator::{Integrator, Line, Outgoing, Path, add_rgb};
+use super::vertex::{Sampled, Vertex, environment};
 use crate::compile::Scene;
-use crate::simd::{Real, Vector3};
+use crate::simd::Real;
 
 /// Direct light.
 pub(super) struct Direct {
@@ -23,16 +23,16 @@ impl Integrator for Direct {
         scene.lights.len()
     }
 
-    fn miss<R: Real>(&self, scene: &Scene, path: &Path<R>, _: Vector3<R>, out: &mut impl Outgoing<R>) {
+    fn miss<R: Real>(&self, scene: &Scene, path: &Path<R>, ray: Line<R>, out: &mut impl Outgoing<R>) {
         if path.depth > 0 || !self.hide_emitters {
-            add_rgb(out, environment(scene, path, 1.0));
+            add_rgb(out, environment(scene, path, ray, Sampled::All));
         }
     }
 
     fn shade<R: Real>(&self, scene: &Scene, vertex: &Vertex<'_, R>, out: &mut impl Outgoing<R>) {
         let path = &vertex.path;
         if path.depth > 0 || !self.hide_emitters {
-            add_rgb(out, vertex.emitted(scene, 1.0));
+            add_rgb(out, vertex.emitted(scene, Sampled::All));
         }
         if path.depth > 0 {
             return;

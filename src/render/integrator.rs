@@ -41,6 +41,9 @@ impl<R: Real> Path<R> {
     }
 }
 
+/// (org, dir) of rays.
+pub(super) type Line<R> = (Vector3<R>, Vector3<R>);
+
 /// Where a vertex puts what it has to say. `lanes` of a call that are false say nothing.
 pub(super) trait Outgoing<R: Real> {
     /// The vertex adds `value` to a channel of the pixel. At most once a channel.
@@ -83,8 +86,16 @@ pub(super) trait Integrator: Sync {
         1
     }
 
-    /// Rays that leave the scene along `dir`.
-    fn miss<R: Real>(&self, scene: &Scene, path: &Path<R>, dir: Vector3<R>, out: &mut impl Outgoing<R>);
+    /// Do paths begin elsewhere than at the camera, in [`begin`](Self::begin)?
+    fn begins(&self) -> bool {
+        false
+    }
+
+    /// Paths that begin elsewhere, at depth 0.
+    fn begin<R: Real>(&self, _: &Scene, _: &Path<R>, _: &mut impl Outgoing<R>) {}
+
+    /// Rays that leave the scene.
+    fn miss<R: Real>(&self, scene: &Scene, path: &Path<R>, ray: Line<R>, out: &mut impl Outgoing<R>);
 
     /// Rays that have hit something.
     fn shade<R: Real>(&self, scene: &Scene, vertex: &Vertex<'_, R>, out: &mut impl Outgoing<R>);

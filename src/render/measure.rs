@@ -4,7 +4,10 @@
 //! pool. Counting is not timed. Both hand out the rays in the same chunks, so what is counted is what was
 //! timed, however many threads there are.
 
-use std::time::{Duration, Instant};
+use std::{
+    cell::RefCell,
+    time::{Duration, Instant},
+};
 
 use rayon::prelude::*;
 
@@ -72,9 +75,21 @@ impl Tally for Counts {
 
 /// Times the fast way: the best of `repeat` runs after a warm-up.
 pub fn packets(scene: &Scene, class: &RayClass, repeat: u32) -> Timed {
+    packets_by(scene, class, Way::Chosen, repeat)
+}
+
+/// [`packets`] by a way of the caller's choice.
+pub fn packets_by(scene: &Scene, class: &RayClass, way: Way, repeat: u32) -> Timed {
+    thread_local! {
+        static TRACER: RefCell<Tracer> = RefCell::new(Tracer::new(()));
+    }
     match class.query {
-        Query::Closest => closest(class, repeat, |rays, hits| scene.closest_hits(rays, hits)),
-        Query::Any => any(class, repeat, |rays, blocked| scene.occluded_stream(rays, blocked)),
+        Query::Closest => closest(class, repeat, |rays, hits| {
+            TRACER.with_borrow_mut(|tracer| scene.closest_hits_by(rays, hits, way, tracer));
+        }),
+        Query::Any => any(class, repeat, |rays, blocked| {
+            TRACER.with_borrow_mut(|tracer| scene.occluded_stream_by(rays, blocked, way, tracer));
+        }),
     }
 }
 

@@ -3,12 +3,16 @@
 //! Tiles are handed to the threads of the current rayon pool. A tile is rendered by the wavefront (eight
 //! rays at a time) or by the reference (one), and both call the same integrators.
 
+mod ao;
 mod aov;
 mod camera_rays;
 mod columns;
+mod departure;
 mod direct;
 mod integrator;
+mod irradiance;
 pub mod measure;
+pub mod meter;
 mod path;
 mod ray_classes;
 mod reference;
@@ -24,17 +28,21 @@ use std::{
     time::Instant,
 };
 
+pub use irradiance::Receiver;
 pub use ray_classes::{Query, RayClass, ray_classes};
 use rayon::prelude::*;
 pub use statistics::{LaneUse, Statistics};
 
 use crate::{
+    bvh::Traversal,
     compile::Scene,
     film::{self, Film, Tile, TileFilm},
     picture::Picture,
     scene,
 };
 use integrator::Integrator;
+use irradiance::Irradiance;
+use path::PathTracer;
 
 /// Side of a tile in pixels: a thousand paths, whose columns stay in a core's second-level cache.
 const TILE: u32 = 32;
@@ -82,23 +90,62 @@ pub struct Rendered {
     pub statistics: Statistics,
 }
 
-/// Renders on the current rayon pool. `progress` is called from its threads, now and then.
-pub fn render(scene: &Scene, settings: &Settings, progress: &(dyn Fn(Progress) + Sync)) -> Rendered {
+/// Something to be done with whatever integrator the scene asks for.
+trait Task {
+    type Done;
+    fn run<I: Integrator>(self, integrator: &I) -> Self::Done;
+}
+
+fn with_integrator<T: Task>(scene: &Scene, task: T) -> T::Done {
     match scene.integrator.clone() {
         scene::Integrator::Path { max_depth, rr_depth, hide_emitters } => {
-            let max_depth = max_depth.unwrap_or(u32::MAX);
-            render_with(scene, &path::PathTracer { max_depth, rr_depth, hide_emitters }, settings, progress)
+            task.run(&paths(max_depth, rr_depth, hide_emitters))
         }
-        scene::Integrator::Direct { hide_emitters } => {
-            render_with(scene, &direct::Direct { hide_emitters }, settings, progress)
+        scene::Integrator::Direct { hide_emitters } => task.run(&direct::Direct { hide_emitters }),
+        scene::Integrator::Whitted { max_depth } => task.run(&whitted::Whitted { max_depth }),
+        scene::Integrator::AmbientOcclusion { distance } => task.run(&ao::AmbientOcclusion { distance }),
+        scene::Integrator::Irradiance { max_depth, rr_depth } => {
+            task.run(&Irradiance { paths: paths(max_depth, rr_depth, false), receiver: None })
         }
-        scene::Integrator::Whitted { max_depth } => {
-            render_with(scene, &whitted::Whitted { max_depth }, settings, progress)
-        }
-        scene::Integrator::Aov { channels } => {
-            render_with(scene, &aov::AovIntegrator { channels }, settings, progress)
+        scene::Integrator::Aov { channels } => task.run(&aov::AovIntegrator { channels }),
+    }
+}
+
+/// Renders on the current rayon pool. `progress` is called from its threads, now and then.
+pub fn render(scene: &Scene, settings: &Settings, progress: &(dyn Fn(Progress) + Sync)) -> Rendered {
+    struct Render<'a>(&'a Scene, &'a Settings, &'a (dyn Fn(Progress) + Sync));
+    impl Task for Render<'_> {
+        type Done = Rendered;
+        fn run<I: Integrator>(self, integrator: &I) -> Rendered {
+            render_with(self.0, integrator, self.1, self.2)
         }
     }
+    with_integrator(scene, Render(scene, settings, progress))
+}
+
+/// What one sample of the pixel (x, y) brings: names of channels, and values that may be NaN or infinite.
+/// A pixel outside of the film has samples too.
+pub fn replay(scene: &Scene, settings: &Settings, pixel: (u32, u32), sample: u32) -> Vec<(String, f32)> {
+    struct Replay<'a>(&'a Scene, &'a Settings, (u32, u32), u32);
+    impl Task for Replay<'_> {
+        type Done = Vec<(String, f32)>;
+        fn run<I: Integrator>(self, integrator: &I) -> Self::Done {
+            let Self(scene, settings, pixel, sample) = self;
+            let values = match settings.backend {
+                Backend::Packet => wavefront::sample(scene, integrator, settings.sort, pixel, sample),
+                Backend::Scalar => {
+                    let (mut traversal, mut statistics) = (Traversal::new(()), Statistics::default());
+                    reference::sample(scene, integrator, pixel, sample, &mut traversal, &mut statistics).0
+                }
+            };
+            integrator.channels().into_iter().zip(values).collect()
+        }
+    }
+    with_integrator(scene, Replay(scene, settings, pixel, sample))
+}
+
+fn paths(max_depth: Option<u32>, rr_depth: u32, hide_emitters: bool) -> PathTracer {
+    PathTracer { max_depth: max_depth.unwrap_or(u32::MAX), rr_depth, hide_emitters }
 }
 
 /// What is rendered of the film, in its coordinates.

@@ -1,13 +1,13 @@
 //! The rendering equation \[Kaj86\], by paths from the eye.
 //!
-//! Each vertex adds what it emits, samples one light (picked uniformly) and draws the next ray from the
+//! Each vertex adds what it emits, samples one light (chosen by what it would bring) and draws the next ray from the
 //! BSDF; a light that is found both ways is weighted by the power heuristic \[VG95\]. Russian roulette goes
 //! by the throughput without the squared index of refraction that glass puts into it.
 
-use super::integrator::{Integrator, Outgoing, Path, add_rgb};
-use super::vertex::{Vertex, environment};
+use super::integrator::{Integrator, Line, Outgoing, Path, add_rgb};
+use super::vertex::{Sampled, Vertex, environment};
 use crate::compile::Scene;
-use crate::simd::{Real, Vector3};
+use crate::simd::Real;
 
 /// Pairs of random numbers at a vertex: light, direction, lobe and roulette.
 const PAIRS: u32 = 3;
@@ -29,16 +29,16 @@ impl Integrator for PathTracer {
         1
     }
 
-    fn miss<R: Real>(&self, scene: &Scene, path: &Path<R>, _: Vector3<R>, out: &mut impl Outgoing<R>) {
+    fn miss<R: Real>(&self, scene: &Scene, path: &Path<R>, ray: Line<R>, out: &mut impl Outgoing<R>) {
         if path.depth > 0 || !self.hide_emitters {
-            add_rgb(out, environment(scene, path, pick(scene)));
+            add_rgb(out, environment(scene, path, ray, Sampled::One));
         }
     }
 
     fn shade<R: Real>(&self, scene: &Scene, vertex: &Vertex<'_, R>, out: &mut impl Outgoing<R>) {
         let path = &vertex.path;
         if path.depth > 0 || !self.hide_emitters {
-            add_rgb(out, vertex.emitted(scene, pick(scene)));
+            add_rgb(out, vertex.emitted(scene, Sampled::One));
         }
         if path.depth + 1 >= self.max_depth {
             return;
@@ -55,9 +55,4 @@ impl Integrator for PathTracer {
         }
         out.next(0, lanes, ray, &next);
     }
-}
-
-/// Probability of each light.
-fn pick(scene: &Scene) -> f32 {
-    1.0 / scene.lights.len().max(1) as f32
 }

@@ -16,7 +16,7 @@ use super::camera_rays;
 use super::integrator::Path;
 use crate::compile::Scene;
 use crate::geometry::{Aabb, Hit, PrimitiveId, REACH, Ray32, offset_origin};
-use crate::light::Light;
+use crate::light::{Light, Reach, Receiver};
 use crate::math::{Frame, Sampler, warp};
 use crate::simd::Vector3;
 
@@ -139,16 +139,19 @@ fn shadow(scene: &Scene, points: &[Point]) -> Vec<Ray32> {
 }
 
 fn shadow_ray(point: &Point, light: &Light, pair: u32) -> Option<Ray32> {
-    let sample = light.sample(point.position, Sampler::<f32>::new(point.key, 0).pair(pair));
+    let receiver = Receiver { position: point.position, n: point.n };
+    let sample = light.sample(&receiver, Sampler::<f32>::new(point.key, 0).pair(pair));
     if !sample.valid || sample.wi.dot(point.n) <= 0.0 {
         return None;
     }
     let org = point.leave(sample.wi);
-    let (dir, t_far) = if sample.at_infinity {
-        (sample.wi, f32::INFINITY)
-    } else {
-        let way = sample.target - org;
-        (way.normalize(), way.length() * REACH)
+    let (dir, t_far) = match sample.reach {
+        Reach::Unhindered => return None,
+        Reach::Infinity => (sample.wi, f32::INFINITY),
+        Reach::Target => {
+            let way = sample.target - org;
+            (way.normalize(), way.length() * REACH)
+        }
     };
     Some(Ray32::new(org.into(), dir.into(), 0.0, t_far)).filter(Ray32::is_valid)
 }

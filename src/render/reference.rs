@@ -34,29 +34,42 @@ pub(super) fn render<I: Integrator>(
     let mut traversal = Traversal::new(());
     for sample in 0..scene.sampler.sample_count {
         for pixel in 0..tile.len() as u32 {
-            let (x, y) = (tile.x + pixel % tile.width, tile.y + pixel / tile.width);
-            let path = Path::start(camera_rays::keys::<f32>(scene, x, y), sample);
-            let (ray, weight) = camera_rays::rays::<f32>(scene, x, y, &path);
-            let mut sums = vec![0.0; channels];
-            let mut flights = VecDeque::from([(ray.lane(0), path)]);
-            while let Some(flight) = flights.pop_front() {
-                let said = vertex(scene, integrator, &flight, channels, &mut traversal, statistics);
-                flights.extend(said.next.into_iter().flatten());
-                for (c, sum) in sums.iter_mut().enumerate() {
-                    let mut value = said.added[c];
-                    for (segment, radiance) in &said.shadows {
-                        value +=
-                            if segment.is_some() { [radiance.x, radiance.y, radiance.z][c] } else { 0.0 };
-                    }
-                    *sum += value;
-                }
-            }
+            let place = (tile.x + pixel % tile.width, tile.y + pixel / tile.width);
+            let (sums, weight) = self::sample(scene, integrator, place, sample, &mut traversal, statistics);
             film.add(pixel as usize, sample, weight, |c| sums[c]);
         }
         statistics.samples += tile.len() as u64;
         sample_done();
     }
     film
+}
+
+/// What one sample of the pixel (x, y) brings to each channel, finite or not, and what it counts.
+pub(super) fn sample<I: Integrator>(
+    scene: &Scene,
+    integrator: &I,
+    (x, y): (u32, u32),
+    sample: u32,
+    traversal: &mut Traversal,
+    statistics: &mut Statistics,
+) -> (Vec<f32>, f32) {
+    let channels = integrator.channels().len();
+    let path = Path::start(camera_rays::keys::<f32>(scene, x, y), sample);
+    let (ray, weight) = camera_rays::rays::<f32>(scene, x, y, &path);
+    let mut sums = vec![0.0; channels];
+    let mut flights = VecDeque::from([(ray.lane(0), path)]);
+    while let Some(flight) = flights.pop_front() {
+        let said = vertex(scene, integrator, &flight, channels, traversal, statistics);
+        flights.extend(said.next.into_iter().flatten());
+        for (c, sum) in sums.iter_mut().enumerate() {
+            let mut value = said.added[c];
+            for (segment, radiance) in &said.shadows {
+                value += if segment.is_some() { [radiance.x, radiance.y, radiance.z][c] } else { 0.0 };
+            }
+            *sum += value;
+        }
+    }
+    (sums, weight)
 }
 
 /// What a vertex has said: shadow rays by index, `None` where there is none or it is blocked.
@@ -95,19 +108,13 @@ fn vertex<I: Integrator>(
     traversal: &mut Traversal,
     statistics: &mut Statistics,
 ) -> Said {
-    let rays = if path.depth == 0 { &mut statistics.camera_rays } else { &mut statistics.bounce_rays };
-    *rays += 1;
     let shadows = vec![(None, Vector3::zero()); integrator.shadow_rays(scene)];
     let mut said = Said { added: vec![0.0; channels], shadows, next: [None; 2] };
-    let hit = scene.closest_hit(ray, traversal);
-    if hit.primitive == PrimitiveId::NONE {
-        integrator.miss(scene, path, ray.dir.into(), &mut said);
-        return said;
+    if path.depth == 0 && integrator.begins() {
+        integrator.begin(scene, path, &mut said);
+    } else {
+        arrive(scene, integrator, (ray, path), &mut said, traversal, statistics);
     }
-    let material = scene.material(hit.primitive);
-    let line = (ray.org.into(), ray.dir.into());
-    let vertex = Vertex::new(scene, *path, line, (hit.t, hit.u, hit.v), hit.primitive.0, material);
-    integrator.shade(scene, &vertex, &mut said);
     for (segment, _) in &mut said.shadows {
         if let Some((org, dir, t_far)) = *segment {
             statistics.shadow_rays += 1;
@@ -117,4 +124,26 @@ fn vertex<I: Integrator>(
         }
     }
     said
+}
+
+/// Traces a ray and says what is where it ends.
+fn arrive<I: Integrator>(
+    scene: &Scene,
+    integrator: &I,
+    (ray, path): (&Ray, &Path<f32>),
+    said: &mut Said,
+    traversal: &mut Traversal,
+    statistics: &mut Statistics,
+) {
+    let rays = if path.depth == 0 { &mut statistics.camera_rays } else { &mut statistics.bounce_rays };
+    *rays += 1;
+    let hit = scene.closest_hit(ray, traversal);
+    let line = (ray.org.into(), ray.dir.into());
+    if hit.primitive == PrimitiveId::NONE {
+        integrator.miss(scene, path, line, said);
+        return;
+    }
+    let material = scene.material(hit.primitive);
+    let vertex = Vertex::new(scene, *path, line, (hit.t, hit.u, hit.v), hit.primitive.0, material);
+    integrator.shade(scene, &vertex, said);
 }

@@ -50,6 +50,21 @@ pub(super) fn render<I: Integrator>(
     film
 }
 
+/// What one sample of the pixel (x, y) brings to each channel, finite or not.
+pub(super) fn sample<I: Integrator>(
+    scene: &Scene,
+    integrator: &I,
+    sort: bool,
+    (x, y): (u32, u32),
+    sample: u32,
+) -> Vec<f32> {
+    let arena = Bump::new();
+    let mut wave = Wavefront::new(&arena, scene, integrator, sort, integrator.channels().len());
+    wave.start(&Tile { x, y, width: 1, height: 1 }, &[(0, 0)], sample);
+    wave.run(sample, &mut Statistics::default());
+    wave.sums.iter().map(|sum| sum[0]).collect()
+}
+
 struct Wavefront<'a, I> {
     scene: &'a Scene,
     integrator: &'a I,
@@ -140,21 +155,36 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     fn run(&mut self, sample: u32, statistics: &mut Statistics) {
         let mut depth = 0;
         while self.paths.len > 0 {
-            let rays = if depth == 0 { &mut statistics.camera_rays } else { &mut statistics.bounce_rays };
-            *rays += self.paths.len as u64;
-            let used = trace::closest(
-                self.scene,
-                &self.paths.rays,
-                self.paths.len,
-                &mut self.hits,
-                &mut self.tracer,
-            );
-            statistics.trace_lanes += used;
-            self.shade(depth, sample, statistics);
+            if depth == 0 && self.integrator.begins() {
+                self.begin(sample, statistics);
+            } else {
+                self.trace(depth, statistics);
+                self.shade(depth, sample, statistics);
+            }
             self.connect(statistics);
             self.add();
             self.advance();
             depth += 1;
+        }
+    }
+
+    fn trace(&mut self, depth: u32, statistics: &mut Statistics) {
+        let Self { scene, paths, hits, tracer, .. } = self;
+        let rays = if depth == 0 { &mut statistics.camera_rays } else { &mut statistics.bounce_rays };
+        *rays += paths.len as u64;
+        statistics.trace_lanes += trace::closest(scene, &paths.rays, paths.len, hits, tracer);
+    }
+
+    /// The first round of paths that begin without a camera.
+    fn begin(&mut self, sample: u32, statistics: &mut Statistics) {
+        let Self { scene, integrator, paths, out, .. } = self;
+        out.clear(paths.len, integrator.shadow_rays(scene));
+        let all: BumpVec<u32> = BumpVec::from_iter_in(0..paths.len as u32, out.kept.bump());
+        for slots in all.chunks(LANES) {
+            statistics.shade_lanes.add(slots.len() as u32);
+            let mut group = Group { slots: fill(slots), count: slots.len(), out };
+            let path = paths.path(&group.slots, 0, sample);
+            integrator.begin(scene, &path, &mut group);
         }
     }
 
@@ -174,7 +204,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             let path = paths.path(&at, depth, sample);
             let (org, dir) = (gather3(&paths.rays.org, &at), gather3(&paths.rays.dir, &at));
             if key == miss {
-                integrator.miss(scene, &path, dir, &mut group);
+                integrator.miss(scene, &path, (org, dir), &mut group);
                 return;
             }
             let tuv = (gather(&hits.t, &at), gather(&hits.u, &at), gather(&hits.v, &at));

@@ -1,10 +1,10 @@
 //! Whitted's recursion \[Whi80\]: direct light at smooth surfaces, both branches at mirrors and glass.
 
-use super::integrator::{Integrator, Outgoing, Path, add_rgb};
-use super::vertex::{Vertex, environment};
+use super::integrator::{Integrator, Line, Outgoing, Path, add_rgb};
+use super::vertex::{Sampled, Vertex, environment};
 use crate::compile::Scene;
 use crate::math::Sampler;
-use crate::simd::{Real, Vector3};
+use crate::simd::Real;
 
 /// The classic picture. Shadow rays go to every light and are blocked by glass.
 pub(super) struct Whitted {
@@ -21,13 +21,13 @@ impl Integrator for Whitted {
         2
     }
 
-    fn miss<R: Real>(&self, scene: &Scene, path: &Path<R>, _: Vector3<R>, out: &mut impl Outgoing<R>) {
-        add_rgb(out, environment(scene, path, 1.0));
+    fn miss<R: Real>(&self, scene: &Scene, path: &Path<R>, ray: Line<R>, out: &mut impl Outgoing<R>) {
+        add_rgb(out, environment(scene, path, ray, Sampled::All));
     }
 
     fn shade<R: Real>(&self, scene: &Scene, vertex: &Vertex<'_, R>, out: &mut impl Outgoing<R>) {
         let path = &vertex.path;
-        add_rgb(out, vertex.emitted(scene, 1.0));
+        add_rgb(out, vertex.emitted(scene, Sampled::All));
         if path.depth + 1 >= self.max_depth {
             return;
         }

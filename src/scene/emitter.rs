@@ -1,8 +1,11 @@
 //! Lights that are not shapes.
 
-use glam::DVec3;
+use std::sync::Arc;
+
+use glam::{DMat3, DVec3};
 
 use super::Rgb;
+use crate::picture::Picture;
 
 /// A light without a surface. Area lights are [`Shape::radiance`](super::Shape::radiance).
 #[derive(Clone, Debug, PartialEq)]
@@ -39,5 +42,22 @@ pub enum Emitter {
     Constant {
         /// W/(m² sr).
         radiance: Rgb,
+    },
+    /// A picture all around: row 0 at local +y, columns from −z over +x, rows aligned to the poles,
+    /// bilinear.
+    Envmap {
+        /// `R G B`, W/(m² sr), finite; what is negative is taken as 0.
+        picture: Arc<Picture>,
+        /// Radiance is the picture's times this.
+        scale: f32,
+        /// Turns, and perhaps mirrors: orthonormal columns.
+        to_world: DMat3,
+    },
+    /// Light from all around, without shadows, in nine spherical harmonics about local axes.
+    Sh {
+        /// W/(m² sr), by l, then m.
+        coefficients: [Rgb; 9],
+        /// Turns, and perhaps mirrors: orthonormal columns.
+        to_world: DMat3,
     },
 }

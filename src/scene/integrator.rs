@@ -23,6 +23,18 @@ pub enum Integrator {
         /// Vertices counted from the eye, as for [`Integrator::Path`].
         max_depth: u32,
     },
+    /// The share of the hemisphere, weighted by the cosine, in which nothing is near.
+    AmbientOcclusion {
+        /// What is farther does not count; +∞ is no limit.
+        distance: f32,
+    },
+    /// Irradiance of what the camera sees, on the side that it sees, W/m².
+    Irradiance {
+        /// As for [`Integrator::Path`]; the surface that is measured counts as a vertex.
+        max_depth: Option<u32>,
+        /// As for [`Integrator::Path`].
+        rr_depth: u32,
+    },
     /// What the camera sees, in place of light.
     Aov {
         /// In the order of the file; each becomes channels `name.SUFFIX`.
@@ -58,4 +70,14 @@ pub enum Aov {
     GeoNormal,
     /// Shading normal in world space as the surface stores it, `.X .Y .Z`.
     ShNormal,
+    /// ∫ f |cos θ| dω for the direction of view, `.R .G .B`.
+    DirectionalAlbedo,
+    /// The material's number from 1 up, `.I`; numbers go by kind.
+    MaterialId,
+    /// The primitive's number from 1 up, in the order of the file, `.I`.
+    PrimitiveId,
+    /// Nodes of the tree that the camera ray is tested against by itself, `.N`, whether it hits or not.
+    Nodes,
+    /// Primitives likewise, `.N`.
+    Primitives,
 }

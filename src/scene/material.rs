@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{Rgb, Texture};
-pub use crate::material::{Distribution, MerlTable, Relief};
+pub use crate::material::{Distribution, MerlTable, Ramp, Relief, Stop};
 
 /// A reflection model and its parameters. Reflectances are in [0, 1].
 #[derive(Clone, Debug, PartialEq)]
@@ -56,7 +56,7 @@ pub enum Material {
     /// A dielectric coat, smooth or rough, over a diffuse base, on the side of the normal.
     Plastic {
         /// The coat's distribution of normals and its α; `None` is smooth.
-        roughness: Option<(Distribution, f32)>,
+        roughness: Option<(Distribution, Texture)>,
         /// Index of refraction of the coat.
         int_ior: f32,
         /// Index of refraction outside.
@@ -82,7 +82,7 @@ pub enum Material {
         /// ρ_s; ρ_d + ρ_s ≤ 1 conserves energy.
         specular_reflectance: Texture,
         /// n.
-        exponent: f32,
+        exponent: Texture,
     },
     /// Ward's anisotropic reflection, bounded, on the side of the normal.
     Ward {
@@ -99,8 +99,8 @@ pub enum Material {
     Toon {
         /// ρ.
         reflectance: Texture,
-        /// How many, at least 2.
-        bands: u32,
+        /// What stands in place of the cosine.
+        ramp: Arc<Ramp>,
     },
     /// An opaque material that is shaded on both sides, as if the side seen were the front.
     TwoSided {

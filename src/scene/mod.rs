@@ -13,7 +13,7 @@ mod texture;
 
 pub use emitter::Emitter;
 pub use integrator::{Aov, AovChannel, Integrator};
-pub use material::{Distribution, Material, MerlTable, Metal, Principled, Relief, Roughness};
+pub use material::{Distribution, Material, MerlTable, Metal, Principled, Ramp, Relief, Roughness, Stop};
 pub use sensor::{Crop, Film, Projection, ReconstructionFilter, Sampler, Sensor};
 pub use shape::{Geometry, Mesh, Shape};
 pub use texture::{Filter, Texture, Wrap};

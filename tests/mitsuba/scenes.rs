@@ -26,25 +26,7 @@ const FOLDERS: [&str; 7] = [
 
 /// Scenes that are refused, and why: where, and what it is that is not there yet.
 const REFUSED: &[(&str, &str)] = &[
-    ("references/scenes/envmap.xml", "envmap.xml:38:20: the emitter `envmap` is not supported yet"),
     ("references/scenes/instancing.xml", "instancing.xml:24:18: the shape `shapegroup` is not supported yet"),
-    ("scenes/mitsuba/living-room/scene.xml", "scene.xml:624:17: the emitter `envmap` is not supported yet"),
-    (
-        "scenes/mitsuba/matpreview/matpreview.xml",
-        "matpreview.xml:33:20: the emitter `envmap` is not supported yet",
-    ),
-    (
-        "scenes/mitsuba/reference/tests/scenes/bsdf_spheres/test_roughplastic_linear_path.xml",
-        "single_sphere.xml:51:20: the emitter `envmap` is not supported yet",
-    ),
-    (
-        "scenes/mitsuba/reference/tests/scenes/bsdf_spheres/test_textured_diffuse_path.xml",
-        "single_sphere.xml:51:20: the emitter `envmap` is not supported yet",
-    ),
-    (
-        "scenes/mitsuba/reference/tests/scenes/bsdf_spheres/test_texturedprincipled1_path.xml",
-        "single_sphere.xml:51:20: the emitter `envmap` is not supported yet",
-    ),
     (
         "scenes/mitsuba/reference/tests/scenes/instancing/test_instancing_path.xml",
         "test_instancing_path.xml:41:18: the shape `shapegroup` is not supported yet",
@@ -106,5 +88,5 @@ fn every_scene_renders_or_is_refused_by_name() {
     }
     println!("{rendered} scenes render as they are");
     assert!(wrong.is_empty(), "\n{}\n", wrong.join("\n"));
-    assert!(rendered >= 30, "only {rendered} scenes were found");
+    assert!(rendered >= 39, "only {rendered} scenes were found");
 }

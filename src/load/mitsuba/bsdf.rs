@@ -1,7 +1,10 @@
 //! Reflection models.
 
 mod optics;
+mod ramp;
 mod wrappers;
+
+use std::sync::Arc;
 
 use super::{
     colour,
@@ -40,7 +43,7 @@ pub(super) fn build(object: Object, files: &mut Files) -> Result<Material, LoadE
         "phong" => Material::Phong {
             diffuse_reflectance: reflectance("diffuse_reflectance", 0.5)?,
             specular_reflectance: reflectance("specular_reflectance", 0.2)?,
-            exponent: object.positive("exponent", 30.0)? as f32,
+            exponent: texture::number(object, "exponent", 30.0, Range::Positive, files)?,
         },
         "merl" => Material::Measured { table: files.table(object)? },
         "ward" => {
@@ -51,7 +54,7 @@ pub(super) fn build(object: Object, files: &mut Files) -> Result<Material, LoadE
         }
         "toon" => Material::Toon {
             reflectance: reflectance("reflectance", 0.5)?,
-            bands: object.count("bands", 3, 2, 256)?,
+            ramp: Arc::new(ramp::ramp(object, files)?),
         },
         "twosided" => wrappers::two_sided(object, files)?,
         "mask" => wrappers::mask(object, files)?,
@@ -123,7 +126,9 @@ fn plastic(object: Object, files: &mut Files) -> Result<Material, LoadError> {
     let diffuse_reflectance = reflectance("diffuse_reflectance", 0.5)?;
     let specular_reflectance = reflectance("specular_reflectance", 1.0)?;
     let roughness = match object.plugin() {
-        "roughplastic" => Some((distribution(object)?, object.positive("alpha", 0.1)? as f32)),
+        "roughplastic" => {
+            Some((distribution(object)?, texture::number(object, "alpha", 0.1, Range::Positive, files)?))
+        }
         _ => None,
     };
     let (int_ior, ext_ior) = (ior(object, "int_ior", "polypropylene")?, ior(object, "ext_ior", "air")?);

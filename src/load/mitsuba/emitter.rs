@@ -1,11 +1,23 @@
 //! Lights that are not shapes.
 
-use glam::DVec3;
+use std::sync::Arc;
 
-use super::{colour, properties::Object};
-use crate::{load::LoadError, scene::Emitter};
+use glam::{DMat3, DVec3};
 
-pub(super) fn build(object: Object) -> Result<Emitter, LoadError> {
+use super::{
+    colour,
+    files::{Files, existing_file},
+    properties::Object,
+};
+use crate::{
+    load::{LoadError, sh},
+    scene::{Emitter, Rgb},
+};
+
+/// How far from a right angle, or from each other's length, the axes of an environment may be.
+const STRETCH: f64 = 1e-4;
+
+pub(super) fn build(object: Object, files: &mut Files) -> Result<Emitter, LoadError> {
     let emitter = match object.plugin() {
         "point" => {
             let intensity = colour::emission(object, "intensity")?;
@@ -29,6 +41,8 @@ pub(super) fn build(object: Object) -> Result<Emitter, LoadError> {
             irradiance: colour::emission(object, "irradiance")?,
         },
         "constant" => Emitter::Constant { radiance: colour::emission(object, "radiance")? },
+        "envmap" => envmap(object, files)?,
+        "shlight" => shlight(object)?,
         "area" => {
             return Err(object
                 .error("an `area` emitter stands inside the shape that shines")
@@ -59,4 +73,60 @@ fn direction(object: Object) -> Result<DVec3, LoadError> {
     let turned = object.to_world()?.matrix3.z_axis;
     let direction = object.vector("direction")?.unwrap_or(turned);
     direction.try_normalize().ok_or_else(|| object.error_at("direction", "`direction` is zero"))
+}
+
+fn envmap(object: Object, files: &mut Files) -> Result<Emitter, LoadError> {
+    let picture = files.picture(object, false)?;
+    let scale = object.float("scale")?.unwrap_or(1.0) as f32;
+    if !(scale >= 0.0 && scale.is_finite()) {
+        return Err(object.error_at("scale", "`scale` must not be negative or exceed 32 bits"));
+    }
+    let mut negative = 0;
+    for channel in &picture.channels {
+        if let Some(place) = channel.samples.iter().position(|sample| !(sample * scale).is_finite()) {
+            let (x, y) = (place % picture.width as usize, place / picture.width as usize);
+            let value = channel.samples[place];
+            return Err(object
+                .error_at(
+                    "filename",
+                    format!("{} of pixel ({x}, {y}) is {value}: not a radiance", channel.name),
+                )
+                .help("an environment's pixels are finite, times `scale` too"));
+        }
+        negative += channel.samples.iter().filter(|sample| **sample < 0.0).count();
+    }
+    if negative > 0 {
+        let message = format!("negative values in the picture ({negative}) are taken as 0");
+        files.warnings.push(object.span("filename").warning(message));
+    }
+    Ok(Emitter::Envmap { picture: Arc::clone(&picture), scale, to_world: turn(object)? })
+}
+
+fn shlight(object: Object) -> Result<Emitter, LoadError> {
+    let path = existing_file(object)?;
+    let read = sh::read(&path).map_err(|why| {
+        object
+            .error_at("filename", format!("the coefficients can't be used: {why}"))
+            .help("`packlight envmap sky.exr --sh -o sky.json` writes them")
+    })?;
+    let scale = object.float("scale")?.unwrap_or(1.0) as f32;
+    let coefficients = read.coefficients.map(|rgb| scale * Rgb::from_array(rgb));
+    if !(scale >= 0.0 && coefficients.iter().all(|rgb| rgb.is_finite())) {
+        return Err(object.error_at("scale", "`scale` must not be negative or exceed 32 bits"));
+    }
+    Ok(Emitter::Sh { coefficients, to_world: turn(object)? })
+}
+
+/// The turn in `to_world`: what is infinitely far away is neither moved nor scaled.
+fn turn(object: Object) -> Result<DMat3, LoadError> {
+    let matrix = object.to_world()?.matrix3;
+    let scale = matrix.determinant().abs().cbrt();
+    let turn = matrix * (1.0 / scale);
+    let unequal = turn.transpose() * turn - DMat3::IDENTITY;
+    match unequal.to_cols_array().iter().all(|off| off.abs() < STRETCH) {
+        true => Ok(turn),
+        false => Err(object
+            .error_at("to_world", "an environment can be turned and mirrored, not stretched")
+            .help("scale all axes alike, or none")),
+    }
 }

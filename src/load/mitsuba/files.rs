@@ -4,7 +4,7 @@ use std::{collections::HashMap, fs, path::PathBuf, sync::Arc};
 
 use super::properties::Object;
 use crate::{
-    load::{LoadError, Warning, obj, ply, serialized},
+    load::{LoadError, Warning, brdf, obj, ply, serialized},
     picture::{self, Encoding, Picture},
     scene::{MerlTable, Mesh},
 };
@@ -71,11 +71,17 @@ impl Files {
         Ok(placed)
     }
 
-    /// The measured table that the `filename` of a `merl` names.
+    /// The measured table that the `filename` of a `merl` names: MERL's own, or scattered measurements in a
+    /// `.brdf`.
     pub(super) fn table(&mut self, bsdf: Object) -> Result<Arc<MerlTable>, LoadError> {
         let path = existing_file(bsdf)?;
         if let Some(table) = self.tables.get(&path) {
             return Ok(Arc::clone(table));
+        }
+        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("brdf")) {
+            let table = Arc::new(brdf::read(&path)?);
+            self.tables.insert(path, Arc::clone(&table));
+            return Ok(table);
         }
         let refusal = |why: String| bsdf.error_at("filename", format!("the table can't be used: {why}"));
         let bytes = fs::read(&path).map_err(|error| refusal(error.to_string()))?;
@@ -99,7 +105,8 @@ impl Files {
     }
 }
 
-fn existing_file(object: Object) -> Result<PathBuf, LoadError> {
+/// The file that the `filename` of an object names.
+pub(super) fn existing_file(object: Object) -> Result<PathBuf, LoadError> {
     let name = object
         .string("filename")?
         .ok_or_else(|| object.missing("filename", "<string name=\"filename\" value=\"…\"/>"))?;

@@ -10,12 +10,17 @@ use crate::{
     scene::{Aov, AovChannel, Integrator},
 };
 
-const AOVS: [(&str, Aov); 5] = [
+const AOVS: [(&str, Aov); 10] = [
     ("depth", Aov::Depth),
     ("position", Aov::Position),
     ("uv", Aov::Uv),
     ("geo_normal", Aov::GeoNormal),
     ("sh_normal", Aov::ShNormal),
+    ("directional_albedo", Aov::DirectionalAlbedo),
+    ("material_id", Aov::MaterialId),
+    ("primitive_id", Aov::PrimitiveId),
+    ("nodes", Aov::Nodes),
+    ("primitives", Aov::Primitives),
 ];
 
 pub(super) fn build(object: Object, files: &mut Files) -> Result<Integrator, LoadError> {
@@ -33,6 +38,11 @@ pub(super) fn build(object: Object, files: &mut Files) -> Result<Integrator, Loa
             Integrator::Direct { hide_emitters: object.boolean("hide_emitters", false)? }
         }
         "whitted" => Integrator::Whitted { max_depth: object.count("max_depth", 10, 0, 1000)? },
+        "ao" => Integrator::AmbientOcclusion { distance: object.positive("distance", f64::INFINITY)? as f32 },
+        "irradiance" => Integrator::Irradiance {
+            max_depth: max_depth(object)?,
+            rr_depth: object.count("rr_depth", 5, 1, i32::MAX as u32)?,
+        },
         "aov" => Integrator::Aov { channels: aovs(object)? },
         _ => return Err(object.unknown_plugin()),
     };

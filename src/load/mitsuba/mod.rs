@@ -10,7 +10,6 @@
 
 mod attributes;
 mod bsdf;
-mod cie;
 mod colour;
 mod document;
 mod emitter;
@@ -24,6 +23,7 @@ mod properties;
 mod reader;
 mod sensor;
 mod shape;
+mod single;
 mod source;
 mod spectrum;
 mod texture;
@@ -35,6 +35,7 @@ use std::{collections::HashMap, path::Path};
 
 use files::Files;
 use properties::Object;
+pub(super) use single::{read_by_id, read_line};
 use vocabulary::Class;
 
 use super::{LoadError, Loaded};
@@ -78,9 +79,11 @@ impl Builder {
         // An `area` emitter that shapes refer to may be defined here without shining here.
         let is_definition = |emitter: &Object| emitter.plugin() == "area" && emitter.is_referenced();
         for object in scene.children(Class::Emitter).into_iter().filter(|emitter| !is_definition(emitter)) {
-            let emitter = emitter::build(object)?;
-            let is_constant = |emitter: &Emitter| matches!(emitter, Emitter::Constant { .. });
-            if is_constant(&emitter) && self.description.emitters.iter().any(is_constant) {
+            let emitter = emitter::build(object, &mut self.files)?;
+            let is_environment = |emitter: &Emitter| {
+                matches!(emitter, Emitter::Constant { .. } | Emitter::Envmap { .. } | Emitter::Sh { .. })
+            };
+            if is_environment(&emitter) && self.description.emitters.iter().any(is_environment) {
                 return Err(object.error("a scene has one environment, not several").label("the second one"));
             }
             self.description.emitters.push(emitter);

@@ -29,6 +29,11 @@ impl Source {
         Ok(Rc::new(Self { path: path.to_owned(), text }))
     }
 
+    /// Text that is in no file.
+    pub(super) fn named(name: &Path, text: &str) -> Rc<Self> {
+        Rc::new(Self { path: name.to_owned(), text: text.to_owned() })
+    }
+
     /// An error that underlines a range of bytes.
     pub(super) fn range_error(&self, range: Range<usize>, message: impl Into<String>) -> LoadError {
         LoadError::at(&self.path, &self.text, range, message)

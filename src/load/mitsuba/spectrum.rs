@@ -10,8 +10,8 @@
 
 use std::{ops::Range, path::Path};
 
-use super::{attributes::Attribute, cie};
-use crate::load::{LoadError, text};
+use super::attributes::Attribute;
+use crate::load::{LoadError, cie, text};
 
 /// XYZ to linear sRGB, for D65 white, as IEC 61966-2-1 has it.
 const TO_SRGB: [[f64; 3]; 3] = [
@@ -91,10 +91,9 @@ impl Curve {
         let mut xyz = [0.0; 3];
         let mut white = 0.0;
         // The middle of each nanometre: curves that break off do so between two of them.
-        let nanometres = (cie::ROWS.len() as u32 - 1) * cie::STEP as u32;
-        for step in 0..nanometres {
-            let wavelength = cie::FIRST + f64::from(step) + 0.5;
-            let row = row(wavelength);
+        for nanometre in cie::VISIBLE {
+            let wavelength = f64::from(nanometre) + 0.5;
+            let row = cie::row(wavelength);
             let weight = weight(row);
             let value = self.at(wavelength) * weight;
             white += weight * row[1];
@@ -132,14 +131,6 @@ fn follows(points: &[(f64, f64)], (wavelength, value): (f64, f64)) -> Result<(),
         }
         _ => Ok(()),
     }
-}
-
-/// A row of the table, between its wavelengths.
-fn row(wavelength: f64) -> [f64; 4] {
-    let place = (wavelength - cie::FIRST) / cie::STEP;
-    let below = (place as usize).min(cie::ROWS.len() - 2);
-    let fraction = place - below as f64;
-    std::array::from_fn(|i| cie::ROWS[below][i] * (1.0 - fraction) + cie::ROWS[below + 1][i] * fraction)
 }
 
 #[cfg(test)]

@@ -40,7 +40,7 @@ impl Class {
     pub(super) fn supported(self) -> &'static [&'static str] {
         match self {
             Self::Scene => &[],
-            Self::Integrator => &["path", "direct", "aov", "moment", "whitted"],
+            Self::Integrator => &["path", "direct", "aov", "moment", "whitted", "ao", "irradiance"],
             Self::Sensor => &["perspective", "thinlens", "orthographic"],
             Self::Sampler => &["independent", "stratified", "multijitter", "orthogonal", "ldsampler"],
             Self::Film => &["hdrfilm"],
@@ -65,7 +65,7 @@ impl Class {
                 "merl",
             ],
             Self::Texture => &["bitmap", "checkerboard"],
-            Self::Emitter => &["area", "point", "spot", "directional", "constant"],
+            Self::Emitter => &["area", "point", "spot", "directional", "constant", "envmap", "shlight"],
             Self::Shape => &["sphere", "rectangle", "cube", "disk", "cylinder", "obj", "ply", "serialized"],
         }
     }
@@ -103,9 +103,7 @@ impl Class {
                 "pplastic",
             ],
             Self::Texture => &["mesh_attribute", "volume"],
-            Self::Emitter => {
-                &["envmap", "sunsky", "projector", "directionalarea", "volumelight", "sky", "sun"]
-            }
+            Self::Emitter => &["sunsky", "projector", "directionalarea", "volumelight", "sky", "sun"],
             Self::Shape => &[
                 "blender",
                 "bsplinecurve",

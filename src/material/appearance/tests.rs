@@ -150,9 +150,9 @@ fn grazing_light_is_shadowed_and_hidden_normals_lean_the_other_way() {
 
 #[test]
 fn samples_of_layers_match_their_density_in_every_view() {
-    let gold = Model::Phong { diffuse: TextureId(0), specular: TextureId(1), exponent: 8.0 };
+    let gold = Model::Phong { diffuse: TextureId(0), specular: TextureId(1), exponent: TextureId(4) };
     let n = Vec3::new(0.3, -0.2, 0.93).normalize();
-    let constants = [Vec3::splat(0.3), Vec3::splat(0.6), Vec3::splat(0.4), n * 0.5 + 0.5];
+    let constants = [Vec3::splat(0.3), Vec3::splat(0.6), Vec3::splat(0.4), n * 0.5 + 0.5, Vec3::splat(8.0)];
     let lean = Step::Normal { texture: TextureId(3), relief: Relief::default() };
     for steps in [&[][..], &[Step::Turn], &[lean], &[lean, Step::Turn], &[Step::Turn, lean]] {
         let scene = table(

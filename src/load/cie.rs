@@ -1,13 +1,26 @@
 //! What wavelengths look like to people, and how strong they are in daylight.
 
-/// Wavelength of the first row of [`ROWS`] and the distance of rows, in nanometres.
-pub(super) const FIRST: f64 = 360.0;
-pub(super) const STEP: f64 = 5.0;
+/// The wavelengths that are visible, in nanometres.
+pub(super) const VISIBLE: std::ops::Range<u32> = 360..830;
+
+/// Distance of the rows, in nanometres.
+const STEP: f64 = 5.0;
+
+/// x̄, ȳ, z̄ and the power of D65 at a wavelength; 0 where nothing is seen.
+pub(super) fn row(wavelength: f64) -> [f64; 4] {
+    let place = (wavelength - f64::from(VISIBLE.start)) / STEP;
+    if !(0.0..=(ROWS.len() - 1) as f64).contains(&place) {
+        return [0.0; 4];
+    }
+    let below = (place as usize).min(ROWS.len() - 2);
+    let fraction = place - below as f64;
+    std::array::from_fn(|i| ROWS[below][i] * (1.0 - fraction) + ROWS[below + 1][i] * fraction)
+}
 
 /// The colour matching functions x̄, ȳ, z̄ of the CIE's standard observer of 1931 (2°), and the relative
 /// spectral power of the CIE's standard illuminant D65 \[CIE04\].
 #[rustfmt::skip]
-pub(super) const ROWS: [[f64; 4]; 95] = [
+const ROWS: [[f64; 4]; 95] = [
     [0.000_129_9, 0.000_003_917, 0.000_606_1, 46.6383], // 360
     [0.000_232_1, 0.000_006_965, 0.001_086, 49.3637], // 365
     [0.000_414_9, 0.000_012_39, 0.001_946, 52.0891], // 370

@@ -1,0 +1,135 @@
+//! `packlight meter SCENE --at X,Y,Z --normal X,Y,Z`: irradiance at a point.
+
+use std::fmt;
+
+use clap::{Args, value_parser};
+use glam::{DVec3, Vec3};
+use serde::Serialize;
+
+use super::{
+    console,
+    failure::{Failure, warn_of},
+    quality::QualityOption,
+    quantity::grouped,
+    source::Source,
+    threads,
+};
+use crate::{
+    compile::compile_with,
+    render::{Receiver, Settings, meter},
+};
+
+/// Arguments of `meter`.
+#[derive(Clone, Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    source: Source,
+
+    /// Where the meter is
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]
+    at: Vec3,
+
+    /// Where it looks; of any length
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = direction)]
+    normal: Vec3,
+
+    /// Samples, at least
+    #[arg(long, value_name = "N", default_value_t = 65_536, value_parser = value_parser!(u64).range(1..))]
+    samples: u64,
+
+    /// Seed of every random decision
+    #[arg(long, value_name = "N")]
+    seed: Option<u32>,
+
+    /// Threads; one a core if not given
+    #[arg(long, value_name = "N", value_parser = threads::count())]
+    threads: Option<usize>,
+
+    #[command(flatten)]
+    quality: QualityOption,
+
+    /// One JSON object on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let reading = threads::pool(arguments.threads)?.install(|| measure(arguments))?;
+    if reading.invalid_samples > 0 {
+        let count = grouped(reading.invalid_samples);
+        warn_of(format!("{count} samples were not finite numbers and were left out"));
+    }
+    if arguments.json { console::print_json(&reading) } else { console::print(&reading.to_string()) }
+}
+
+fn measure(arguments: &Arguments) -> Result<Reading, Failure> {
+    let (mut description, _) = arguments.source.load()?;
+    let sampler = &mut description.sensor.sampler;
+    sampler.seed = arguments.seed.unwrap_or(sampler.seed);
+    let scene = compile_with(&description, arguments.quality.quality())?;
+    let receiver = Receiver { position: arguments.at, normal: arguments.normal };
+    let reading = meter::measure(scene, receiver, arguments.samples, &Settings::default());
+    Ok(Reading {
+        scene: arguments.source.path.display().to_string(),
+        at: arguments.at.to_array(),
+        normal: arguments.normal.to_array(),
+        irradiance_w_m2: reading.irradiance.to_array(),
+        standard_error_w_m2: reading.standard_error.to_array(),
+        samples: reading.samples,
+        invalid_samples: reading.invalid_samples,
+    })
+}
+
+/// Field names are the keys of `--json`; units are in the names.
+#[derive(Clone, Debug, Serialize)]
+struct Reading {
+    scene: String,
+    at: [f32; 3],
+    normal: [f32; 3],
+    irradiance_w_m2: [f64; 3],
+    standard_error_w_m2: [f64; 3],
+    samples: u64,
+    invalid_samples: u64,
+}
+
+impl fmt::Display for Reading {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let vector = |[x, y, z]: [f32; 3]| format!("({x}, {y}, {z})");
+        writeln!(f, "{} at {}, towards {}", self.scene, vector(self.at), vector(self.normal))?;
+        for (band, i) in ["red", "green", "blue"].into_iter().zip(0..) {
+            let (mean, error) = (self.irradiance_w_m2[i], self.standard_error_w_m2[i]);
+            writeln!(f, "  {band:<6} {mean:.6} ± {error:.6} W/m²")?;
+        }
+        writeln!(f, "  {} samples; ± is one standard error", grouped(self.samples))
+    }
+}
+
+fn vector(argument: &str) -> Result<Vec3, String> {
+    let numbers: Vec<f64> = argument.split(',').map_while(|number| number.trim().parse().ok()).collect();
+    match numbers[..] {
+        [x, y, z] if argument.split(',').count() == 3 && DVec3::new(x, y, z).as_vec3().is_finite() => {
+            Ok(DVec3::new(x, y, z).as_vec3())
+        }
+        _ => Err("expected three numbers, as in 0,1.5,-2".into()),
+    }
+}
+
+fn direction(argument: &str) -> Result<Vec3, String> {
+    vector(argument)?.try_normalize().ok_or_else(|| "a direction has a length".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_numbers_are_a_place() {
+        assert_eq!(vector("0, 1.5,-2"), Ok(Vec3::new(0.0, 1.5, -2.0)));
+        for wrong in ["", "1,2", "1,2,3,4", "1,x,3", "1,2,inf", "1,2,1e300"] {
+            assert!(vector(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(direction("0,0,-7"), Ok(Vec3::NEG_Z));
+        assert!(direction("0,0,0").is_err());
+    }
+}
