@@ -31,9 +31,9 @@ fn scenes() -> Vec<(String, SceneDescription)> {
 
 fn pictures(c: &mut Criterion) {
     for (name, mut description) in scenes() {
-        let Film { width, height } = description.sensor.film;
+        let Film { width, height, .. } = description.sensor.film;
         let height = (u64::from(WIDTH) * u64::from(height) / u64::from(width)).max(1) as u32;
-        description.sensor.film = Film { width: WIDTH, height };
+        description.sensor.film = Film::new(WIDTH, height);
         description.sensor.sampler.sample_count = SAMPLES;
         let Ok(scene) = compile(&description) else {
             continue;

@@ -134,7 +134,7 @@ fn shading(c: &mut Criterion) {
 fn mixed(c: &mut Criterion) {
     let Ok(loaded) = load("scenes/materials.xml".as_ref(), &LoadOptions::default()) else { return };
     let mut description = loaded.description;
-    description.sensor.film = Film { width: 192, height: 128 };
+    description.sensor.film = Film::new(192, 128);
     description.sensor.sampler.sample_count = 4;
     let Ok(scene) = compile(&description) else { return };
     let mut group = c.benchmark_group("mixed");

@@ -40,6 +40,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("bumpalo", &["render/"]),
     ("clap", &["cli/"]),
     ("exr", &["picture/"]),
+    ("flate2", &["load/serialized.rs", "load/serialized/"]),
     ("glam", &[""]),
     ("image", &["picture/"]),
     ("indicatif", &["cli/"]),

@@ -23,7 +23,7 @@ use packlight::{
 
 const MESHES: [&str; 4] = ["gen:soup:20k", "gen:terrain:20k", "gen:spheres:20k", "gen:hair:20k"];
 /// Twelve thousand rays of the camera: 128 × 96.
-const FILM: Film = Film { width: 128, height: 96 };
+const FILM: Film = Film::new(128, 96);
 const PINNED: &str = include_str!("traversal_cost/counts.txt");
 
 fn scene(mesh: &str) -> Scene {

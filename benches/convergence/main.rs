@@ -17,7 +17,7 @@ use packlight::{
 };
 
 /// Pictures, small: error is a mean over pixels, so few are enough.
-const FILM: Film = Film { width: 48, height: 36 };
+const FILM: Film = Film::new(48, 36);
 /// Samples a pixel: powers of two, where the sequence is stratified.
 const COUNTS: [u32; 9] = [1, 2, 4, 8, 16, 32, 64, 128, 256];
 /// Of what the others are compared with.

@@ -14,7 +14,7 @@ pub(crate) fn describe(path: &str) -> Option<SceneDescription> {
         return None;
     }
     let mut description = load(path.as_ref(), &LoadOptions::default()).ok()?.description;
-    description.sensor.film = Film { width: 256, height: 192 };
+    description.sensor.film = Film::new(256, 192);
     Some(description)
 }
 

@@ -114,8 +114,8 @@ impl Extent {
     /// A ray of the camera for each pixel.
     pub(crate) fn film(self) -> Film {
         match self {
-            Self::Smoke => Film { width: 64, height: 48 },
-            Self::Full | Self::Quick => Film { width: 640, height: 480 },
+            Self::Smoke => Film::new(64, 48),
+            Self::Full | Self::Quick => Film::new(640, 480),
         }
     }
 

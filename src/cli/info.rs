@@ -82,6 +82,7 @@ impl Info {
         let sensor = &description.sensor;
         let (projection, x_fov_degrees) = match sensor.projection {
             Projection::Perspective { x_fov } => ("perspective", Some(x_fov.to_degrees())),
+            Projection::ThinLens { x_fov, .. } => ("thinlens", Some(x_fov.to_degrees())),
             Projection::Orthographic => ("orthographic", None),
         };
         Self {
@@ -98,8 +99,8 @@ impl Info {
             quality: QualityName::from(summary.quality).name(),
             load_seconds: load_time.as_secs_f64(),
             peak_memory_bytes: memory::peak(),
-            width: sensor.film.width,
-            height: sensor.film.height,
+            width: sensor.film.window().width,
+            height: sensor.film.window().height,
             samples_per_pixel: sensor.sampler.sample_count,
             seed: sensor.sampler.seed,
             projection,

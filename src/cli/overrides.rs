@@ -4,7 +4,7 @@ use std::fmt;
 
 use clap::ValueEnum;
 
-use crate::scene::{Aov, AovChannel, Film, Integrator, SceneDescription};
+use crate::scene::{Aov, AovChannel, Crop, Film, Integrator, SceneDescription};
 
 /// The largest picture, in pixels a side.
 pub(super) const MAX_SIDE: u32 = 65_536;
@@ -122,10 +122,25 @@ fn every_channel() -> Vec<AovChannel> {
 fn resized(film: Film, width: Option<u32>, height: Option<u32>) -> Film {
     match (width, height) {
         (None, None) => film,
-        (Some(width), Some(height)) => Film { width, height },
-        (Some(width), None) => Film { width, height: scaled(film.height, width, film.width) },
-        (None, Some(height)) => Film { width: scaled(film.width, height, film.height), height },
+        (Some(width), Some(height)) => enlarged(film, width, height),
+        (Some(width), None) => enlarged(film, width, scaled(film.height, width, film.width)),
+        (None, Some(height)) => enlarged(film, scaled(film.width, height, film.height), height),
     }
+}
+
+/// Of another size, with the crop where it was in proportion.
+fn enlarged(film: Film, width: u32, height: u32) -> Film {
+    let span = |start: u32, length: u32, to: u32, from: u32| {
+        let edge = |at: u32| (f64::from(at) * f64::from(to) / f64::from(from)).round() as u32;
+        let first = edge(start).min(to - 1);
+        (first, (edge(start + length).min(to) - first).max(1))
+    };
+    let crop = film.crop.map(|crop| {
+        let (x, columns) = span(crop.x, crop.width, width, film.width);
+        let (y, rows) = span(crop.y, crop.height, height, film.height);
+        Crop { x, y, width: columns, height: rows }
+    });
+    Film { width, height, crop, ..film }
 }
 
 /// `length` · `to` / `from`, rounded, as a side of a picture.
@@ -166,17 +181,29 @@ mod tests {
 
     #[test]
     fn one_side_keeps_the_aspect_ratio() {
-        let film = Film { width: 1920, height: 1080 };
-        assert_eq!(resized(film, Some(640), None), Film { width: 640, height: 360 });
-        assert_eq!(resized(film, None, Some(540)), Film { width: 960, height: 540 });
-        assert_eq!(resized(film, Some(5), Some(9)), Film { width: 5, height: 9 });
+        let film = Film::new(1920, 1080);
+        assert_eq!(resized(film, Some(640), None), Film::new(640, 360));
+        assert_eq!(resized(film, None, Some(540)), Film::new(960, 540));
+        assert_eq!(resized(film, Some(5), Some(9)), Film::new(5, 9));
         // 1080 / 1920 = 0.5625 rounds up.
-        assert_eq!(resized(film, Some(1), None), Film { width: 1, height: 1 });
+        assert_eq!(resized(film, Some(1), None), Film::new(1, 1));
+    }
+
+    #[test]
+    fn a_crop_stays_where_it_was_in_proportion() {
+        let crop = Some(Crop { x: 10, y: 0, width: 30, height: 50 });
+        let film = resized(Film { crop, ..Film::new(100, 50) }, Some(50), None);
+        assert_eq!((film.width, film.height), (50, 25));
+        assert_eq!(film.crop, Some(Crop { x: 5, y: 0, width: 15, height: 25 }));
+        // A sliver does not vanish.
+        let crop = Some(Crop { x: 99, y: 49, width: 1, height: 1 });
+        let film = resized(Film { crop, ..Film::new(100, 50) }, Some(2), Some(1));
+        assert_eq!(film.crop, Some(Crop { x: 1, y: 0, width: 1, height: 1 }));
     }
 
     #[test]
     fn a_side_is_never_zero_nor_beyond_the_limit() {
-        let ribbon = Film { width: 60_000, height: 1 };
+        let ribbon = Film::new(60_000, 1);
         assert_eq!(resized(ribbon, Some(10), None).height, 1);
         assert_eq!(resized(ribbon, None, Some(60_000)).width, MAX_SIDE);
     }

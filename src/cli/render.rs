@@ -130,7 +130,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn numbers(arguments: &Arguments, pixel: [u32; 2]) -> Result<Replay, Failure> {
     let (mut description, _) = arguments.source.load()?;
     arguments.overrides().apply(&mut description);
-    let Film { width, height } = description.sensor.film;
+    let Film { width, height, .. } = description.sensor.film;
     if pixel[0] >= width || pixel[1] >= height {
         let message = format!("--pixel is outside of the picture, which has {width} x {height} pixels");
         return Err(Cli::command().error(ErrorKind::ValueValidation, message).into());

@@ -90,8 +90,8 @@ impl From<Sources<'_>> for Report {
         Self {
             scene: from.scene,
             output: from.output,
-            width: description.sensor.film.width,
-            height: description.sensor.film.height,
+            width: description.sensor.film.window().width,
+            height: description.sensor.film.window().height,
             samples_per_pixel: description.sensor.sampler.sample_count,
             integrator: IntegratorName::from(&description.integrator).to_string(),
             backend: match from.settings.backend {

@@ -1,6 +1,7 @@
 //! A description to columns in leaf order, ids and a tree.
 
 mod canonical;
+mod filter;
 mod lights;
 mod materials;
 mod mesh;
@@ -20,6 +21,7 @@ use glam::Vec3;
 
 use crate::bvh::{Bvh, Child, Quality, Reference};
 use crate::camera::Camera;
+use crate::film::Filter;
 use crate::geometry::Aabb;
 use crate::light::{Light, LightChoice, LightId};
 use crate::material::MaterialTable;
@@ -43,6 +45,7 @@ pub struct Scene {
     /// Size of the bounds of everything that can be hit.
     extent: Vec3,
     pub(crate) camera: Camera,
+    pub(crate) filter: Filter,
     /// Size of the picture.
     pub film: Film,
     /// Samples per pixel and seed.
@@ -152,6 +155,7 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
         environments,
         extent,
         camera: camera(&description.sensor),
+        filter: filter::compile(description.sensor.film.filter),
         film: description.sensor.film,
         sampler: description.sensor.sampler,
         integrator: description.integrator.clone(),
@@ -165,6 +169,10 @@ fn camera(sensor: &Sensor) -> Camera {
     match sensor.projection {
         Projection::Perspective { x_fov } => {
             Camera::perspective(sensor.to_world, libm::tan(x_fov / 2.0), size, clip)
+        }
+        Projection::ThinLens { x_fov, aperture_radius, focus_distance } => {
+            let lens = (aperture_radius, focus_distance);
+            Camera::thin_lens(sensor.to_world, libm::tan(x_fov / 2.0), size, clip, lens)
         }
         Projection::Orthographic => Camera::orthographic(sensor.to_world, size, clip),
     }

@@ -1,7 +1,11 @@
 //! Samples to pictures: planes of sums.
 //!
-//! A pixel is the mean of its own samples (a box filter of one pixel), added in sample order; a sample
-//! with a value that is not finite is counted and kept out.
+//! A pixel is the weighted mean of its own samples, drawn and weighted by a [`Filter`] and added in sample
+//! order; a sample with a value that is not finite is counted and kept out.
+
+mod filter;
+
+pub use filter::Filter;
 
 use crate::picture::{Channel, Picture};
 
@@ -41,6 +45,8 @@ pub fn tiles(width: u32, height: u32, size: u32) -> Vec<Tile> {
 #[derive(Clone, Debug)]
 pub struct TileFilm {
     sums: Vec<f32>,
+    /// Of the samples of each pixel.
+    weights: Vec<f32>,
     counts: Vec<u32>,
     /// Samples kept out.
     pub invalid: u64,
@@ -51,12 +57,18 @@ pub struct TileFilm {
 impl TileFilm {
     /// An empty film of this many pixels and channels.
     pub fn new(pixels: usize, channels: usize) -> Self {
-        Self { sums: vec![0.0; pixels * channels], counts: vec![0; pixels], invalid: 0, first_invalid: None }
+        Self {
+            sums: vec![0.0; pixels * channels],
+            weights: vec![0.0; pixels],
+            counts: vec![0; pixels],
+            invalid: 0,
+            first_invalid: None,
+        }
     }
 
-    /// Adds a sample to a pixel: `value(c)` for each channel c.
+    /// Adds a sample of a weight to a pixel: `value(c)` for each channel c.
     #[inline]
-    pub fn add(&mut self, pixel: usize, sample: u32, value: impl Fn(usize) -> f32) {
+    pub fn add(&mut self, pixel: usize, sample: u32, weight: f32, value: impl Fn(usize) -> f32) {
         let pixels = self.counts.len();
         let channels = self.sums.len() / pixels;
         if !(0..channels).all(|c| value(c).is_finite()) {
@@ -66,16 +78,22 @@ impl TileFilm {
             return;
         }
         for c in 0..channels {
-            self.sums[c * pixels + pixel] += value(c);
+            self.sums[c * pixels + pixel] += value(c) * weight;
         }
+        self.weights[pixel] += weight;
         self.counts[pixel] += 1;
     }
 
     /// The mean of a pixel's samples, 0 where it has none.
+    ///
+    /// Divided by their weights, so that what is the same everywhere stays the same; but a few samples of
+    /// both signs may weigh nothing together, and are then divided by their number.
     pub fn mean(&self, pixel: usize, channel: usize) -> f32 {
-        match self.counts[pixel] {
-            0 => 0.0,
-            count => self.sums[channel * self.counts.len() + pixel] / count as f32,
+        let sum = self.sums[channel * self.counts.len() + pixel];
+        match (self.counts[pixel], self.weights[pixel]) {
+            (0, _) => 0.0,
+            (_, weight) if weight > 0.0 => sum / weight,
+            (count, _) => sum / count as f32,
         }
     }
 }
@@ -134,11 +152,24 @@ mod tests {
     #[test]
     fn invalid_samples_are_counted_and_kept_out() {
         let mut film = TileFilm::new(2, 1);
-        film.add(1, 0, |_| 2.0);
-        film.add(1, 1, |_| f32::NAN);
-        film.add(1, 2, |_| 4.0);
-        film.add(0, 7, |_| f32::INFINITY);
+        film.add(1, 0, 1.0, |_| 2.0);
+        film.add(1, 1, 1.0, |_| f32::NAN);
+        film.add(1, 2, 1.0, |_| 4.0);
+        film.add(0, 7, 1.0, |_| f32::INFINITY);
         assert_eq!((film.mean(1, 0), film.mean(0, 0)), (3.0, 0.0));
         assert_eq!((film.invalid, film.first_invalid), (2, Some((0, 7))));
+    }
+
+    #[test]
+    fn weights_of_both_signs_keep_what_is_the_same_everywhere() {
+        let mut film = TileFilm::new(1, 1);
+        for (sample, weight) in [1.0, -1.0, 1.0, 1.0].into_iter().enumerate() {
+            film.add(0, sample as u32, weight, |_| 0.75);
+        }
+        assert_eq!(film.mean(0, 0), 0.75);
+        let mut none = TileFilm::new(1, 1);
+        none.add(0, 0, 1.0, |_| 3.0);
+        none.add(0, 1, -1.0, |_| 1.0);
+        assert_eq!(none.mean(0, 0), 1.0);
     }
 }

@@ -116,7 +116,7 @@ impl Ball {
 /// From the front, the right and slightly above; the ball just fits the height of the picture.
 fn frame(Ball { center, radius }: Ball) -> Sensor {
     const X_FOV: f64 = 40.0 / 90.0 * FRAC_PI_2;
-    let film = Film { width: 800, height: 600 };
+    let film = Film::new(800, 600);
     let half_height = (X_FOV / 2.0).tan() * f64::from(film.height) / f64::from(film.width);
     let distance = 1.02 * radius / half_height.atan().sin();
 

@@ -2,6 +2,7 @@
 
 mod bare;
 mod brdf;
+mod cie;
 mod error;
 pub mod generate;
 mod mitsuba;
@@ -10,6 +11,7 @@ mod obj;
 mod obj_materials;
 mod obj_text;
 mod ply;
+mod serialized;
 pub mod sh;
 mod spectrum;
 mod text;

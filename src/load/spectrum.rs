@@ -4,17 +4,10 @@
 //! X = X_w ∫ R x̄ S dλ / ∫ x̄ S dλ        likewise Y and Z; S = D65, X_w its tristimulus
 //! ```
 //!
-//! with the CIE 1931 observer by the fit of \[WSS13\]. A surface that reflects everything is (1, 1, 1),
+//! with the CIE 1931 observer. A surface that reflects everything is (1, 1, 1),
 //! whichever wavelengths were measured.
 
-/// Relative power of the CIE's daylight D65 from 400 nm on, every 10 nm.
-const D65: [f64; 31] = [
-    82.7549, 91.4860, 93.4318, 86.6823, 104.865, 117.008, 117.812, 114.861, 115.923, 108.811, 109.354,
-    107.802, 104.790, 107.689, 104.405, 104.046, 100.0, 96.3342, 95.7880, 88.6856, 90.0062, 89.5991, 87.6987,
-    83.2886, 83.6992, 80.0268, 80.2146, 82.2778, 78.2842, 69.7213, 71.6091,
-];
-const D65_FIRST: f64 = 400.0;
-const D65_STEP: f64 = 10.0;
+use super::cie;
 
 /// XYZ of D65 to linear sRGB, IEC 61966-2-1, and XYZ of its white.
 const TO_RGB: [[f64; 3]; 3] = [
@@ -37,8 +30,9 @@ impl Observer {
         let last = wavelengths.len() - 1;
         let weigh = |i: usize| {
             let (low, high) = (wavelengths[i.saturating_sub(1)], wavelengths[(i + 1).min(last)]);
-            let power = daylight(wavelengths[i]) * if last > 0 { high - low } else { 1.0 };
-            curves(wavelengths[i]).map(|curve| curve * power)
+            let [x, y, z, daylight] = cie::row(wavelengths[i]);
+            let power = daylight * if last > 0 { high - low } else { 1.0 };
+            [x, y, z].map(|curve| curve * power)
         };
         let bands: Vec<[f64; 3]> = (0..=last).map(weigh).collect();
         let total = [0, 1, 2].map(|k| bands.iter().map(|band| band[k]).sum::<f64>());
@@ -56,25 +50,6 @@ impl Observer {
             sum.max(0.0) as f32
         })
     }
-}
-
-fn daylight(wavelength: f64) -> f64 {
-    let place = ((wavelength - D65_FIRST) / D65_STEP).clamp(0.0, (D65.len() - 1) as f64);
-    let cell = (place as usize).min(D65.len() - 2);
-    D65[cell] + (D65[cell + 1] - D65[cell]) * (place - cell as f64)
-}
-
-/// x̄, ȳ and z̄ at a wavelength.
-fn curves(wavelength: f64) -> [f64; 3] {
-    let lobe = |height: f64, center: f64, below: f64, above: f64| {
-        let t = (wavelength - center) / if wavelength < center { below } else { above };
-        height * libm::exp(-0.5 * t * t)
-    };
-    [
-        lobe(1.056, 599.8, 37.9, 31.0) + lobe(0.362, 442.0, 16.0, 26.7) + lobe(-0.065, 501.1, 20.4, 26.2),
-        lobe(0.821, 568.8, 46.9, 40.5) + lobe(0.286, 530.9, 16.3, 31.1),
-        lobe(1.217, 437.0, 11.8, 36.0) + lobe(0.681, 459.0, 26.0, 13.8),
-    ]
 }
 
 #[cfg(test)]
@@ -116,8 +91,8 @@ mod tests {
     #[test]
     fn the_curves_are_those_of_the_observer() {
         // CIE 1931, from the standard's table: y̅(555) = 1, x̅(600) = 1.0622, z̅(450) = 1.7721.
-        assert!((curves(555.0)[1] - 1.0).abs() < 0.02);
-        assert!((curves(600.0)[0] - 1.0622).abs() < 0.02);
-        assert!((curves(450.0)[2] - 1.7721).abs() < 0.05);
+        assert!((cie::row(555.0)[1] - 1.0).abs() < 0.02);
+        assert!((cie::row(600.0)[0] - 1.0622).abs() < 0.02);
+        assert!((cie::row(450.0)[2] - 1.7721).abs() < 0.05);
     }
 }

@@ -161,7 +161,7 @@ impl Set {
         self.0.sensor = Sensor {
             to_world: looking(from, target),
             projection: Projection::Perspective { x_fov: fov.to_radians() },
-            film: Film { width: exposure.side, height: exposure.side },
+            film: Film::new(exposure.side, exposure.side),
             sampler: Sampler { sample_count: exposure.samples, seed: 0 },
             ..Sensor::default()
         };

@@ -21,15 +21,20 @@ fn even_bits(code: u32) -> u32 {
     (0..16).fold(0, |bits, b| bits | (code >> (2 * b) & 1) << b)
 }
 
-/// Rays through pixels (x, y) of the picture, each at its path's first pair of random numbers.
+/// The pair of random numbers for the lens. Vertices count their pairs upwards from 1 and never come here.
+const LENS: u32 = u32::MAX;
+
+/// Rays through pixels (x, y) of the film, each where its path's first pair of random numbers and the
+/// filter say, and what they count in their pixels.
 #[inline]
-pub(super) fn rays<R: Real>(scene: &Scene, x: R::Bits, y: R::Bits, path: &Path<R>) -> RayLanes<R> {
-    let (u, v) = Sampler::<R>::new(path.key, path.sample).pair(0);
+pub(super) fn rays<R: Real>(scene: &Scene, x: R::Bits, y: R::Bits, path: &Path<R>) -> (RayLanes<R>, R) {
+    let sampler = Sampler::<R>::new(path.key, path.sample);
+    let ((u, v), weight) = scene.filter.sample(sampler.pair(0));
     let at = |pixel: R::Bits, offset: R| R::from_int(pixel) + offset;
-    scene.camera.rays(at(x, u), at(y, v))
+    (scene.camera.rays(at(x, u), at(y, v), || sampler.pair(LENS)), weight)
 }
 
-/// Keys of the paths through pixels (x, y).
+/// Keys of the paths through pixels (x, y) of the film.
 #[inline]
 pub(super) fn keys<R: Real>(scene: &Scene, x: R::Bits, y: R::Bits) -> R::Bits {
     R::Bits::from_fn(|i| crate::math::PathKey::new(x.lane(i), y.lane(i), scene.sampler.seed).0)

@@ -8,7 +8,7 @@
 use glam::DVec3;
 
 use super::{Receiver, Settings, irradiance::Irradiance, paths, render_with, statistics::Statistics};
-use crate::{compile::Scene, scene};
+use crate::{compile::Scene, film::Filter, scene};
 
 /// Independent readings: a side of a square of pixels.
 const SIDE: u32 = 16;
@@ -29,7 +29,8 @@ pub struct Reading {
 /// Measures on the current rayon pool with at least `samples`. Paths are as long as the scene's integrator
 /// allows; the receiver counts as a vertex. The scene's film and sampler are not used but for the seed.
 pub fn measure(mut scene: Scene, receiver: Receiver, samples: u64, settings: &Settings) -> Reading {
-    scene.film = scene::Film { width: SIDE, height: SIDE };
+    scene.film = scene::Film::new(SIDE, SIDE);
+    scene.filter = Filter::BOX;
     let each = samples.div_ceil(u64::from(SIDE * SIDE)).clamp(1, u32::MAX.into());
     scene.sampler.sample_count = each as u32;
     let (max_depth, rr_depth) = match scene.integrator {

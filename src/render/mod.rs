@@ -135,7 +135,7 @@ pub fn replay(scene: &Scene, settings: &Settings, pixel: (u32, u32), sample: u32
                 Backend::Packet => wavefront::sample(scene, integrator, settings.sort, pixel, sample),
                 Backend::Scalar => {
                     let (mut traversal, mut statistics) = (Traversal::new(()), Statistics::default());
-                    reference::sample(scene, integrator, pixel, sample, &mut traversal, &mut statistics)
+                    reference::sample(scene, integrator, pixel, sample, &mut traversal, &mut statistics).0
                 }
             };
             integrator.channels().into_iter().zip(values).collect()
@@ -148,6 +148,17 @@ fn paths(max_depth: Option<u32>, rr_depth: u32, hide_emitters: bool) -> PathTrac
     PathTracer { max_depth: max_depth.unwrap_or(u32::MAX), rr_depth, hide_emitters }
 }
 
+/// What is rendered of the film, in its coordinates.
+fn tiles(scene: &Scene) -> Vec<Tile> {
+    let window = scene.film.window();
+    let mut tiles = film::tiles(window.width, window.height, TILE);
+    for tile in &mut tiles {
+        tile.x += window.x;
+        tile.y += window.y;
+    }
+    tiles
+}
+
 fn render_with<I: Integrator>(
     scene: &Scene,
     integrator: &I,
@@ -155,8 +166,8 @@ fn render_with<I: Integrator>(
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Rendered {
     let start = Instant::now();
-    let (width, height) = (scene.film.width, scene.film.height);
-    let total = u64::from(width) * u64::from(height) * u64::from(scene.sampler.sample_count);
+    let window = scene.film.window();
+    let total = u64::from(window.width) * u64::from(window.height) * u64::from(scene.sampler.sample_count);
     let done = AtomicU64::new(0);
     let render_tile = |tile: &Tile| -> (TileFilm, Statistics) {
         let mut statistics = Statistics::default();
@@ -176,12 +187,13 @@ fn render_with<I: Integrator>(
             .map(|(pixel, sample)| (tile.x + pixel % tile.width, tile.y + pixel / tile.width, sample));
         (film, statistics)
     };
-    let tiles = film::tiles(width, height, TILE);
+    let tiles = tiles(scene);
     let finished: Vec<_> = tiles.par_iter().with_max_len(1).map(render_tile).collect();
-    let mut film = Film::new(width, height, &integrator.channels());
+    let mut film = Film::new(window.width, window.height, &integrator.channels());
     let mut statistics = Statistics::default();
     for (tile, (tile_film, tile_statistics)) in tiles.iter().zip(&finished) {
-        film.place(tile, tile_film);
+        let place = Tile { x: tile.x - window.x, y: tile.y - window.y, ..*tile };
+        film.place(&place, tile_film);
         statistics.merge(tile_statistics);
     }
     statistics.time = start.elapsed();

@@ -15,7 +15,6 @@ use rayon::prelude::*;
 use super::camera_rays;
 use super::integrator::Path;
 use crate::compile::Scene;
-use crate::film;
 use crate::geometry::{Aabb, Hit, PrimitiveId, REACH, Ray32, offset_origin};
 use crate::light::{Light, Reach, Receiver};
 use crate::math::{Frame, Sampler, warp};
@@ -88,14 +87,14 @@ impl Point {
 
 /// Camera rays and the keys of their pixels.
 fn primary(scene: &Scene) -> (Vec<Ray32>, Vec<u32>) {
-    let tiles = film::tiles(scene.film.width, scene.film.height, super::TILE);
+    let tiles = super::tiles(scene);
     let pixels = tiles
         .iter()
         .flat_map(|tile| camera_rays::morton(tile).into_iter().map(move |(x, y)| (tile.x + x, tile.y + y)));
     pixels
         .map(|(x, y)| {
             let key = camera_rays::keys::<f32>(scene, x, y);
-            let ray = camera_rays::rays(scene, x, y, &Path::<f32>::start(key, 0));
+            let (ray, _) = camera_rays::rays(scene, x, y, &Path::<f32>::start(key, 0));
             (Ray32::new(ray.org.into(), ray.dir.into(), ray.t_near, ray.t_far), key)
         })
         .unzip()

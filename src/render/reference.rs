@@ -35,8 +35,8 @@ pub(super) fn render<I: Integrator>(
     for sample in 0..scene.sampler.sample_count {
         for pixel in 0..tile.len() as u32 {
             let place = (tile.x + pixel % tile.width, tile.y + pixel / tile.width);
-            let sums = self::sample(scene, integrator, place, sample, &mut traversal, statistics);
-            film.add(pixel as usize, sample, |c| sums[c]);
+            let (sums, weight) = self::sample(scene, integrator, place, sample, &mut traversal, statistics);
+            film.add(pixel as usize, sample, weight, |c| sums[c]);
         }
         statistics.samples += tile.len() as u64;
         sample_done();
@@ -44,7 +44,7 @@ pub(super) fn render<I: Integrator>(
     film
 }
 
-/// What one sample of the pixel (x, y) brings to each channel, finite or not.
+/// What one sample of the pixel (x, y) brings to each channel, finite or not, and what it counts.
 pub(super) fn sample<I: Integrator>(
     scene: &Scene,
     integrator: &I,
@@ -52,12 +52,12 @@ pub(super) fn sample<I: Integrator>(
     sample: u32,
     traversal: &mut Traversal,
     statistics: &mut Statistics,
-) -> Vec<f32> {
+) -> (Vec<f32>, f32) {
     let channels = integrator.channels().len();
     let path = Path::start(camera_rays::keys::<f32>(scene, x, y), sample);
-    let ray = camera_rays::rays::<f32>(scene, x, y, &path).lane(0);
+    let (ray, weight) = camera_rays::rays::<f32>(scene, x, y, &path);
     let mut sums = vec![0.0; channels];
-    let mut flights = VecDeque::from([(ray, path)]);
+    let mut flights = VecDeque::from([(ray.lane(0), path)]);
     while let Some(flight) = flights.pop_front() {
         let said = vertex(scene, integrator, &flight, channels, traversal, statistics);
         flights.extend(said.next.into_iter().flatten());
@@ -69,7 +69,7 @@ pub(super) fn sample<I: Integrator>(
             *sum += value;
         }
     }
-    sums
+    (sums, weight)
 }
 
 /// What a vertex has said: shadow rays by index, `None` where there is none or it is blocked.

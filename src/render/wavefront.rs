@@ -41,7 +41,8 @@ pub(super) fn render<I: Integrator>(
         wave.start(tile, &pixels, sample);
         wave.run(sample, statistics);
         for (place, &(x, y)) in pixels.iter().enumerate() {
-            film.add((y * tile.width + x) as usize, sample, |c| wave.sums[c][place]);
+            let weight = wave.weights[place];
+            film.add((y * tile.width + x) as usize, sample, weight, |c| wave.sums[c][place]);
         }
         statistics.samples += pixels.len() as u64;
         sample_done();
@@ -75,6 +76,8 @@ struct Wavefront<'a, I> {
     keys: IntColumn<'a>,
     sorter: Sorter<'a>,
     out: Outputs<'a>,
+    /// For each pixel what its sample counts.
+    weights: Column<'a>,
     /// For each channel and each pixel what its paths have brought.
     sums: BumpVec<'a, Column<'a>>,
 }
@@ -120,6 +123,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
                 branches: integrator.branches(),
                 slots: 0,
             },
+            weights: BumpVec::new_in(arena),
             sums: planes(),
         }
     }
@@ -130,15 +134,17 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             sum.clear();
             sum.resize(pixels.len(), 0.0);
         }
+        self.weights.clear();
         self.paths.resize(pixels.len());
         for (packet, group) in pixels.chunks(LANES).enumerate() {
             let pixel = |i: usize| group[i.min(group.len() - 1)];
             let x = u32x8::from_fn(|i| tile.x + pixel(i).0);
             let y = u32x8::from_fn(|i| tile.y + pixel(i).1);
             let path = Path::start(camera_rays::keys::<f32x8>(self.scene, x, y), sample);
-            let ray = camera_rays::rays::<f32x8>(self.scene, x, y, &path);
+            let (ray, weight) = camera_rays::rays::<f32x8>(self.scene, x, y, &path);
             let at = std::array::from_fn(|i| (packet * LANES + i) as u32);
             self.paths.store(&at, (1 << group.len()) - 1, (ray.org, ray.dir, ray.t_far), &path);
+            self.weights.extend((0..group.len()).map(|i| weight.lane(i)));
             for (i, slot) in at.into_iter().enumerate().take(group.len()) {
                 self.paths.pixel[slot as usize] = (packet * LANES + i) as u32;
             }

@@ -14,7 +14,7 @@ mod texture;
 pub use emitter::Emitter;
 pub use integrator::{Aov, AovChannel, Integrator};
 pub use material::{Distribution, Material, MerlTable, Metal, Principled, Ramp, Relief, Roughness, Stop};
-pub use sensor::{Film, Projection, Sampler, Sensor};
+pub use sensor::{Crop, Film, Projection, ReconstructionFilter, Sampler, Sensor};
 pub use shape::{Geometry, Mesh, Shape};
 pub use texture::{Filter, Texture, Wrap};
 

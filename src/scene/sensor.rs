@@ -41,23 +41,94 @@ pub enum Projection {
         /// Angle that the film's **width** spans, radians, in (0, π). Loaders convert other axes.
         x_fov: f64,
     },
+    /// A lens without thickness: what is not at `focus_distance` is blurred.
+    ThinLens {
+        /// As seen from the centre of the lens; see [`Projection::Perspective`].
+        x_fov: f64,
+        /// Radius of the aperture, a disc; positive.
+        aperture_radius: f64,
+        /// Distance along the axis of the plane in focus; positive.
+        focus_distance: f64,
+    },
     /// Parallel rays; the film's width spans camera x in [-1, 1].
     Orthographic,
 }
 
-/// Size of the picture in pixels. The filter is a box: a pixel is the mean of its own samples.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Size of the picture in pixels, and how samples become pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Film {
     /// Columns, at least 1.
     pub width: u32,
     /// Rows, at least 1; row 0 is the top.
     pub height: u32,
+    /// The part that is rendered; `None` is all of it. It lies within the film.
+    pub crop: Option<Crop>,
+    /// What a pixel sees.
+    pub filter: ReconstructionFilter,
+}
+
+impl Film {
+    /// All of a film of this size, by the box filter.
+    pub const fn new(width: u32, height: u32) -> Self {
+        Self { width, height, crop: None, filter: ReconstructionFilter::Box }
+    }
+
+    /// The part that is rendered.
+    pub fn window(&self) -> Crop {
+        self.crop.unwrap_or(Crop { x: 0, y: 0, width: self.width, height: self.height })
+    }
 }
 
 impl Default for Film {
     fn default() -> Self {
-        Self { width: 768, height: 576 }
+        Self::new(768, 576)
     }
+}
+
+/// A rectangle of pixels of a [`Film`]. Its pixels are to the bit what they are in the whole picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    /// First column.
+    pub x: u32,
+    /// First row.
+    pub y: u32,
+    /// Columns, at least 1.
+    pub width: u32,
+    /// Rows, at least 1.
+    pub height: u32,
+}
+
+/// The curve by which radiance about a pixel's centre counts, the same in x and in y. Lengths are in
+/// pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum ReconstructionFilter {
+    /// The pixel itself, all of it alike.
+    #[default]
+    Box,
+    /// A pyramid.
+    Tent {
+        /// Half of its base; positive.
+        radius: f64,
+    },
+    /// A bell curve, lowered so that it ends at four standard deviations.
+    Gaussian {
+        /// Standard deviation; positive.
+        stddev: f64,
+    },
+    /// Mitchell's and Netravali's cubics \[MN88\]; ends at 2.
+    Mitchell {
+        /// Share of blur.
+        b: f64,
+        /// Share of ringing.
+        c: f64,
+    },
+    /// The sharpest of these that does not ring far: [`ReconstructionFilter::Mitchell`] with b = 0 and c = ½.
+    CatmullRom,
+    /// sinc x · sinc x/n.
+    Lanczos {
+        /// n: lobes on each side, and where it ends; at least 1.
+        lobes: u32,
+    },
 }
 
 /// Where sample positions come from.

@@ -8,6 +8,13 @@ const EQUAL_ENERGY: [f64; 3] = [1.2048, 0.9483, 0.9089];
 
 /// A colour in [0, 1]; `None` if the property is absent or is not a plain colour.
 pub(super) fn reflectance(object: Object, name: &'static str) -> Result<Option<Rgb>, LoadError> {
+    if let Some(Value::Curve(curve)) = object.value(name)
+        && curve.most() <= 1.0
+    {
+        // Saturated colours that surfaces can have, but sRGB can't.
+        let rgb = curve.reflected();
+        return Ok(Some(single(in_gamut(object, name, rgb.map(|band| band.clamp(0.0, 1.0)), rgb))));
+    }
     let Some(rgb) = plain(object, name) else { return Ok(None) };
     match rgb.iter().all(|band| (0.0..=1.0).contains(band)) {
         true => Ok(Some(single(rgb))),
@@ -51,6 +58,12 @@ pub(super) fn emission(object: Object, name: &'static str) -> Result<Rgb, LoadEr
         None => return Ok(Rgb::ONE),
         Some(&Value::Rgb(rgb)) => rgb,
         Some(&Value::Spectrum(number)) => EQUAL_ENERGY.map(|band| band * number),
+        Some(&Value::Float(grey)) => [grey; 3],
+        Some(&Value::Integer(grey)) => [grey as f64; 3],
+        Some(Value::Curve(curve)) => {
+            let rgb = curve.emitted();
+            in_gamut(object, name, rgb.map(|band| band.max(0.0)), rgb)
+        }
         Some(Value::Object(_)) => {
             return Err(object
                 .error_at(name, format!("a texture as `{name}` is not supported yet"))
@@ -66,8 +79,23 @@ fn plain(object: Object, name: &'static str) -> Option<[f64; 3]> {
         Value::Rgb(rgb) => Some(rgb),
         Value::Spectrum(grey) | Value::Float(grey) => Some([grey; 3]),
         Value::Integer(grey) => Some([grey as f64; 3]),
+        Value::Curve(ref curve) => {
+            let rgb = curve.reflected();
+            Some(in_gamut(object, name, rgb.map(|band| band.max(0.0)), rgb))
+        }
         _ => None,
     }
+}
+
+/// The nearest colour that sRGB has, with a warning if it is another one.
+fn in_gamut(object: Object, name: &str, clamped: [f64; 3], [r, g, b]: [f64; 3]) -> [f64; 3] {
+    // A step of rounding is no other colour.
+    if clamped.iter().zip([r, g, b]).any(|(inside, band)| (inside - band).abs() > 1e-6) {
+        let colour =
+            format!("`{name}` is the colour ({r:.4}, {g:.4}, {b:.4}), which sRGB lacks: it is clamped");
+        object.warn_at(name, colour);
+    }
+    clamped
 }
 
 fn not_negative(object: Object, name: &str, rgb: [f64; 3]) -> Result<Rgb, LoadError> {

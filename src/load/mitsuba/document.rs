@@ -8,10 +8,13 @@ use std::{
 use glam::{DAffine3, DVec3};
 
 use super::{
+    attributes::Attribute,
+    folders::Folders,
     source::Span,
+    spectrum::Curve,
     vocabulary::{Class, nearest},
 };
-use crate::load::LoadError;
+use crate::load::{LoadError, Warning};
 
 /// Every object of a scene; the scene itself is [`Document::root`].
 #[derive(Debug, Default)]
@@ -20,6 +23,9 @@ pub(super) struct Document {
     pub(super) root: usize,
     /// Places of the objects that have an `id`.
     pub(super) ids: HashMap<String, usize>,
+    pub(super) folders: Folders,
+    /// What builders had to say of values that can't be taken as they are.
+    pub(super) warnings: RefCell<Vec<Warning>>,
 }
 
 /// An object element.
@@ -62,7 +68,10 @@ pub(super) enum Value {
     String(String),
     Vector(DVec3),
     Rgb([f64; 3]),
+    /// A constant one.
     Spectrum(f64),
+    /// A spectrum over wavelengths.
+    Curve(Curve),
     Transform(DAffine3),
     /// Place in [`Document::nodes`].
     Object(usize),
@@ -80,7 +89,7 @@ impl Value {
             Self::String(_) => "string",
             Self::Vector(_) => "vector",
             Self::Rgb(_) => "rgb",
-            Self::Spectrum(_) => "spectrum",
+            Self::Spectrum(_) | Self::Curve(_) => "spectrum",
             Self::Transform(_) => "transform",
             Self::Object(_) => "object",
             Self::Reference(_) => "ref",
@@ -89,6 +98,17 @@ impl Value {
 }
 
 impl Document {
+    /// Gives an object a name.
+    pub(super) fn add_id(&mut self, id: &Attribute, place: usize) -> Result<(), LoadError> {
+        match self.ids.insert(id.value.clone(), place) {
+            None => Ok(()),
+            Some(_) => Err(id
+                .error(format!("two objects have the id `{}`", id.value))
+                .label("the second one")
+                .help("ids name one object each: rename one of the two")),
+        }
+    }
+
     /// Puts objects in the place of references to them; an `id` may stand after its `ref`.
     pub(super) fn resolve(&mut self) -> Result<(), LoadError> {
         let Self { nodes, ids, .. } = self;

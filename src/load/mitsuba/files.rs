@@ -1,15 +1,10 @@
 //! Meshes and pictures: each file is read once.
 
-use std::{
-    collections::HashMap,
-    fs,
-    path::{Path, PathBuf},
-    sync::Arc,
-};
+use std::{collections::HashMap, fs, path::PathBuf, sync::Arc};
 
 use super::properties::Object;
 use crate::{
-    load::{LoadError, Warning, brdf, obj, ply},
+    load::{LoadError, Warning, brdf, obj, ply, serialized},
     picture::{self, Encoding, Picture},
     scene::{MerlTable, Mesh},
 };
@@ -17,34 +12,63 @@ use crate::{
 /// What has been read so far.
 #[derive(Default)]
 pub(super) struct Files {
-    /// By path and whether v is flipped.
-    meshes: HashMap<(PathBuf, bool), Arc<Mesh>>,
+    meshes: HashMap<MeshKey, Placed>,
     /// By path and whether the numbers are raw.
     pictures: HashMap<(PathBuf, bool), Arc<Picture>>,
     tables: HashMap<PathBuf, Arc<MerlTable>>,
     pub(super) warnings: Vec<Warning>,
 }
 
+/// What makes two shapes one mesh.
+#[derive(Clone, PartialEq, Eq, Hash)]
+struct MeshKey {
+    path: PathBuf,
+    /// v is turned round.
+    flip: bool,
+    /// Which mesh of the file.
+    index: u32,
+}
+
+/// A mesh, and whether its file asks for it to be shaded flat.
+#[derive(Clone)]
+pub(super) struct Placed {
+    pub(super) mesh: Arc<Mesh>,
+    pub(super) face_normals: bool,
+}
+
 impl Files {
-    /// The mesh that the `filename` of an `obj` or `ply` shape names.
-    pub(super) fn mesh(&mut self, shape: Object) -> Result<Arc<Mesh>, LoadError> {
-        let is_obj = shape.plugin() == "obj";
-        let read = if is_obj { obj::read_mesh } else { ply::read_mesh };
+    /// The mesh that the `filename` of an `obj`, `ply` or `serialized` shape names.
+    pub(super) fn mesh(&mut self, shape: Object) -> Result<Placed, LoadError> {
         let path = existing_file(shape)?;
-        let flip = shape.boolean("flip_tex_coords", is_obj)?;
-        let key = (path, flip);
-        if let Some(mesh) = self.meshes.get(&key) {
-            return Ok(Arc::clone(mesh));
+        let key = match shape.plugin() {
+            "serialized" => {
+                let index = shape.count("shape_index", 0, 0, i32::MAX as u32)?;
+                MeshKey { path, flip: false, index }
+            }
+            plugin => {
+                let flip = shape.boolean("flip_tex_coords", plugin == "obj")?;
+                MeshKey { path, flip, index: 0 }
+            }
+        };
+        if let Some(placed) = self.meshes.get(&key) {
+            return Ok(placed.clone());
         }
-        let mut mesh = read(&key.0, &mut self.warnings)?;
-        if flip {
+        let (mut mesh, face_normals) = match shape.plugin() {
+            "obj" => (obj::read_mesh(&key.path, &mut self.warnings)?, false),
+            "ply" => (ply::read_mesh(&key.path, &mut self.warnings)?, false),
+            _ => {
+                let read = serialized::read_mesh(&key.path, key.index)?;
+                (read.mesh, read.face_normals)
+            }
+        };
+        if key.flip {
             for uv in &mut mesh.uvs {
                 uv.y = 1.0 - uv.y;
             }
         }
-        let mesh = Arc::new(mesh);
-        self.meshes.insert(key, Arc::clone(&mesh));
-        Ok(mesh)
+        let placed = Placed { mesh: Arc::new(mesh), face_normals };
+        self.meshes.insert(key, placed.clone());
+        Ok(placed)
     }
 
     /// The measured table that the `filename` of a `merl` names: MERL's own, or scattered measurements in a
@@ -86,19 +110,5 @@ pub(super) fn existing_file(object: Object) -> Result<PathBuf, LoadError> {
     let name = object
         .string("filename")?
         .ok_or_else(|| object.missing("filename", "<string name=\"filename\" value=\"…\"/>"))?;
-    let path = object.span("filename").resolve(name);
-    match path.is_file() {
-        true => Ok(path),
-        false => Err(object
-            .error_at("filename", format!("there is no file `{name}`"))
-            .label("not found")
-            .help(format!(
-                "looked for {}; names are relative to the XML file's folder",
-                absolute(&path).display()
-            ))),
-    }
-}
-
-fn absolute(path: &Path) -> PathBuf {
-    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+    object.folders().file(object.span("filename"), name)
 }

@@ -3,7 +3,7 @@
 use super::{
     files::Files,
     properties::Object,
-    vocabulary::{did_you_mean, nearest},
+    vocabulary::{Class, did_you_mean, nearest},
 };
 use crate::{
     load::LoadError,
@@ -24,6 +24,9 @@ const AOVS: [(&str, Aov); 10] = [
 ];
 
 pub(super) fn build(object: Object, files: &mut Files) -> Result<Integrator, LoadError> {
+    if object.plugin() == "moment" {
+        return moment(object, files);
+    }
     let integrator = match object.plugin() {
         "path" => Integrator::Path {
             max_depth: max_depth(object)?,
@@ -45,6 +48,24 @@ pub(super) fn build(object: Object, files: &mut Files) -> Result<Integrator, Loa
     };
     object.finish()?;
     Ok(integrator)
+}
+
+/// Mitsuba's `moment` adds squares to what the integrator inside it estimates.
+fn moment(object: Object, files: &mut Files) -> Result<Integrator, LoadError> {
+    let Some(inside) = object.child(Class::Integrator)? else {
+        return Err(object
+            .error("the integrator `moment` has no integrator inside")
+            .help("write <integrator type=\"moment\"><integrator type=\"path\"/></integrator>"));
+    };
+    if inside.plugin() == "moment" {
+        return Err(inside.error("a `moment` can't stand inside a `moment`"));
+    }
+    object.finish()?;
+    files.warnings.push(object.warning(format!(
+        "`moment` is read as the `{}` inside it: second moments are not written",
+        inside.plugin()
+    )));
+    build(inside, files)
 }
 
 fn max_depth(object: Object) -> Result<Option<u32>, LoadError> {

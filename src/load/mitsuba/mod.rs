@@ -14,6 +14,8 @@ mod colour;
 mod document;
 mod emitter;
 mod files;
+mod film;
+mod folders;
 mod integrator;
 mod parameters;
 mod presets;
@@ -23,6 +25,7 @@ mod sensor;
 mod shape;
 mod single;
 mod source;
+mod spectrum;
 mod texture;
 mod transform;
 mod vocabulary;
@@ -43,7 +46,9 @@ pub(super) fn read_scene(path: &Path, defines: &[(String, String)]) -> Result<Lo
     let document = reader::read(path, defines)?;
     let mut builder = Builder::default();
     builder.scene(Object::root(&document))?;
-    Ok(Loaded { description: builder.description, warnings: builder.files.warnings })
+    let mut warnings = builder.files.warnings;
+    warnings.extend(document.warnings.take());
+    Ok(Loaded { description: builder.description, warnings })
 }
 
 #[derive(Default)]

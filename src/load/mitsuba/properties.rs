@@ -4,6 +4,7 @@ use glam::{DAffine3, DVec3};
 
 use super::{
     document::{Document, Entry, Node, Value},
+    folders::Folders,
     source::Span,
     transform,
     vocabulary::{Class, did_you_mean, listed, nearest},
@@ -40,6 +41,20 @@ impl<'d> Object<'d> {
 
     pub(super) fn is_referenced(self) -> bool {
         self.node().referenced.get()
+    }
+
+    /// Where the files are that the scene names.
+    pub(super) fn folders(self) -> &'d Folders {
+        &self.document.folders
+    }
+
+    /// A warning about the value of a property. What is built twice warns once.
+    pub(super) fn warn_at(self, name: &str, message: impl Into<String>) {
+        let warning = self.span(name).warning(message);
+        let mut warnings = self.document.warnings.borrow_mut();
+        if !warnings.contains(&warning) {
+            warnings.push(warning);
+        }
     }
 
     /// An error that underlines the element's name.

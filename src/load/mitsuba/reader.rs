@@ -1,5 +1,7 @@
 //! XML to a [`Document`]: structure, parameters and includes, but no plugin's meaning.
 
+mod elsewhere;
+
 use std::{
     cell::{Cell, RefCell},
     fs,
@@ -12,25 +14,23 @@ use roxmltree::Node as XmlNode;
 use super::{
     attributes::{Attribute, Attributes},
     document::{Document, Entry, Node, Value},
+    folders::Folders,
     parameters::Parameters,
     source::{Source, Span},
+    spectrum::Curve,
     transform,
     vocabulary::{Class, FOREIGN_ELEMENTS, PROPERTIES, did_you_mean},
     xml::{elements, no_children, parse, tag_span},
 };
 use crate::load::LoadError;
 
-/// Files that include files that include files …
-const MAX_INCLUDE_DEPTH: usize = 16;
-/// Includes in one scene: a few files that include each other twice make thousands.
-const MAX_INCLUDES: usize = 1024;
 /// Elements within elements; real scenes need about 6.
 const MAX_NESTING: usize = 64;
 
 /// Reads a scene file and what it includes.
 pub(super) fn read(path: &Path, defines: &[(String, String)]) -> Result<Document, LoadError> {
     let mut reader = Reader {
-        document: Document::default(),
+        document: Document { folders: Folders::of_scene(path), ..Document::default() },
         parameters: Parameters::new(defines),
         open: Vec::new(),
         includes: 0,
@@ -91,13 +91,8 @@ impl Reader {
         self.read_entries(source, xml, depth, &mut entries)?;
 
         let place = self.document.nodes.len();
-        if let Some(id) = &id
-            && self.document.ids.insert(id.value.clone(), place).is_some()
-        {
-            return Err(id
-                .error(format!("two objects have the id `{}`", id.value))
-                .label("the second one")
-                .help("ids name one object each: rename one of the two"));
+        if let Some(id) = &id {
+            self.document.add_id(id, place)?;
         }
         self.document.nodes.push(Node {
             class,
@@ -138,6 +133,8 @@ impl Reader {
         let entry = match element {
             "default" => return self.read_default(source, xml),
             "include" => return self.include(source, xml, depth, entries),
+            "path" => return self.path(source, xml),
+            "alias" => return self.alias(source, xml),
             "scene" => return Err(tag.error("a scene can't stand inside an object")),
             "ref" => {
                 let mut attributes = self.attributes(source, xml)?;
@@ -194,6 +191,13 @@ impl Reader {
             };
             return Ok(new_entry(Some(name), tag, Value::Vector(triple.into())));
         }
+        if element == "spectrum"
+            && let Some(file) = attributes.take("filename")
+        {
+            attributes.finish()?;
+            let path = self.document.folders.file(&file.span, &file.value)?;
+            return Ok(new_entry(Some(name), file.span, Value::Curve(Curve::read(&path)?)));
+        }
         let text = attributes.require("value")?;
         attributes.finish()?;
         let value = match element.as_str() {
@@ -201,6 +205,7 @@ impl Reader {
             "float" => Value::Float(text.number()?),
             "boolean" => Value::Boolean(text.boolean()?),
             "rgb" => Value::Rgb(read_rgb(&text)?),
+            "spectrum" if text.value.contains(':') => Value::Curve(Curve::parse(&text)?),
             "spectrum" => Value::Spectrum(read_spectrum(&text)?),
             _ => Value::String(text.value),
         };
@@ -217,48 +222,6 @@ impl Reader {
             return Err(name.error("the name of a parameter is empty"));
         }
         self.parameters.default(&name.value, &value.value);
-        Ok(())
-    }
-
-    /// Reads the elements of another file as if they stood here.
-    fn include(
-        &mut self,
-        source: &Rc<Source>,
-        xml: XmlNode,
-        depth: usize,
-        entries: &mut Vec<Entry>,
-    ) -> Result<(), LoadError> {
-        let mut attributes = self.attributes(source, xml)?;
-        let file = attributes.require("filename")?;
-        attributes.finish()?;
-        no_children(source, xml)?;
-        let path = file.span.resolve(&file.value);
-        let canonical = fs::canonicalize(&path).map_err(|e| {
-            file.error(format!("`{}` can't be included: {e}", file.value))
-                .help(format!("looked for {}", path.display()))
-        })?;
-        if self.open.contains(&canonical) {
-            return Err(file
-                .error(format!("`{}` includes itself", file.value))
-                .help("break the loop: move what both files need into a third one"));
-        }
-        self.includes += 1;
-        if self.open.len() > MAX_INCLUDE_DEPTH || self.includes > MAX_INCLUDES {
-            return Err(file.error(format!(
-                "includes are nested more than {MAX_INCLUDE_DEPTH} deep or number more than {MAX_INCLUDES}"
-            )));
-        }
-        self.open.push(canonical);
-        let included = Source::read(&path)?;
-        let xml = parse(&included)?;
-        let root = xml.root_element();
-        if root.tag_name().name() == "scene" {
-            check_version(&mut self.attributes(&included, root)?)?;
-            self.read_entries(&included, root, depth, entries)?;
-        } else {
-            self.read_child(&included, root, depth, entries)?;
-        }
-        self.open.pop();
         Ok(())
     }
 
@@ -322,11 +285,10 @@ fn read_rgb(text: &Attribute) -> Result<[f64; 3], LoadError> {
 }
 
 fn read_spectrum(text: &Attribute) -> Result<f64, LoadError> {
-    let constant = text.value.split([',', ' ']).filter(|word| !word.is_empty()).count() == 1;
-    if !constant || text.value.contains(':') {
-        return Err(text
-            .error("only constant spectra, of one number, are supported")
-            .help("write the colour as <rgb …/>"));
+    match text.numbers()?[..] {
+        [number] => Ok(number),
+        ref other => Err(text
+            .error(format!("`spectrum` takes one number or a curve, found {} numbers", other.len()))
+            .help("write a colour as <rgb …/>, a curve as value=\"400:0.1, 500:0.2\" in nanometres")),
     }
-    text.number()
 }

@@ -1,6 +1,6 @@
-//! Cameras, films and samplers.
+//! Cameras and samplers.
 
-use super::{files::Files, properties::Object, transform, vocabulary::Class};
+use super::{files::Files, film, properties::Object, transform, vocabulary::Class};
 use crate::{
     load::LoadError,
     scene::{Film, Projection, Sampler, Sensor},
@@ -8,8 +8,6 @@ use crate::{
 
 /// Diagonal of a 36 mm × 24 mm negative, to which `focal_length` refers.
 const DIAGONAL_35MM: f64 = 43.266_615_305_567_87;
-/// Pictures wider or higher than this are taken for slips.
-const MAX_SIDE: u32 = 65_536;
 
 #[derive(Clone, Copy)]
 enum Axis {
@@ -25,7 +23,7 @@ pub(super) fn build(object: Object, files: &mut Files) -> Result<Sensor, LoadErr
         return Err(object.unknown_plugin());
     }
     let to_world = object.to_world()?;
-    let film = film(object, files)?;
+    let film = film::build(object, files)?;
     let sampler = sampler(object, files)?;
     let near_clip = object.positive("near_clip", 0.01)?;
     let far_clip = object.positive("far_clip", 10_000.0)?;
@@ -37,22 +35,47 @@ pub(super) fn build(object: Object, files: &mut Files) -> Result<Sensor, LoadErr
     }
     let projection = match object.plugin() {
         "orthographic" => Projection::Orthographic,
-        _ => {
+        plugin => {
             if transform::similarity(to_world).is_none_or(|factor| (factor - 1.0).abs() > 1e-3) {
                 return Err(object
-                    .error_at("to_world", "the `to_world` of a `perspective` sensor can't scale or shear")
+                    .error_at(
+                        "to_world",
+                        format!("the `to_world` of a `{plugin}` sensor can't scale or shear"),
+                    )
                     .help("`fov` sets the size of the picture"));
             }
-            Projection::Perspective { x_fov: x_fov(object, film)? }
+            let x_fov = x_fov(object, film)?;
+            match plugin {
+                "thinlens" => Projection::ThinLens {
+                    x_fov,
+                    aperture_radius: required(object, "aperture_radius", "0.1")?,
+                    focus_distance: required(object, "focus_distance", "5")?,
+                },
+                _ => {
+                    // Everything in a pinhole's picture is in focus.
+                    object.float("focus_distance")?;
+                    Projection::Perspective { x_fov }
+                }
+            }
         }
     };
     object.finish()?;
     Ok(Sensor { to_world, projection, near_clip, far_clip, film, sampler })
 }
 
+/// A number greater than 0 that has no default.
+fn required(object: Object, name: &'static str, example: &str) -> Result<f64, LoadError> {
+    match object.has(name) {
+        true => object.positive(name, 1.0),
+        false => {
+            // Known here, so that the help can tell it from a misspelt name.
+            object.value(name);
+            Err(object.missing(name, &format!("<float name=\"{name}\" value=\"{example}\"/>")))
+        }
+    }
+}
+
 fn x_fov(object: Object, film: Film) -> Result<f64, LoadError> {
-    // Everything in a pinhole's picture is in focus.
-    object.float("focus_distance")?;
     object.exclude("fov", "focal_length")?;
     let axis = object.choice(
         "fov_axis",
@@ -96,57 +119,6 @@ fn span_of_width(tangent: f64, axis: Axis, aspect: f64) -> f64 {
         Axis::Diagonal => tangent * aspect / (aspect * aspect + 1.0).sqrt(),
     };
     2.0 * libm::atan(half_width)
-}
-
-fn film(sensor: Object, files: &mut Files) -> Result<Film, LoadError> {
-    let default = Film::default();
-    let Some(film) = sensor.child(Class::Film)? else {
-        files
-            .warnings
-            .push(sensor.warning("the sensor has no film: 768 × 576 pixels and a box filter are used"));
-        return Ok(default);
-    };
-    if film.plugin() != "hdrfilm" {
-        return Err(film.unknown_plugin());
-    }
-    let size = Film {
-        width: film.count("width", default.width, 1, MAX_SIDE)?,
-        height: film.count("height", default.height, 1, MAX_SIDE)?,
-    };
-    film.choice("file_format", &[("openexr", ())], ())?;
-    film.choice("pixel_format", &[("rgb", ())], ())?;
-    film.choice("component_format", &[("float16", ()), ("float32", ()), ("uint32", ())], ())?;
-    filter(film, files)?;
-    film.finish()?;
-    Ok(size)
-}
-
-fn filter(film: Object, files: &mut Files) -> Result<(), LoadError> {
-    let Some(filter) = film.child(Class::RFilter)? else {
-        files.warnings.push(
-            film.warning("no rfilter is given, which means `gaussian`: the box filter is used in its place"),
-        );
-        return Ok(());
-    };
-    match filter.plugin() {
-        "box" => {
-            let radius = filter.positive("radius", 0.5)?;
-            if radius != 0.5 {
-                return Err(
-                    filter.error_at("radius", "a box filter of another radius than 0.5 is not supported")
-                );
-            }
-        }
-        "gaussian" => {
-            filter.positive("stddev", 0.5)?;
-            files.warnings.push(
-                filter
-                    .warning("the rfilter `gaussian` is not supported: the box filter is used in its place"),
-            );
-        }
-        _ => return Err(filter.unknown_plugin()),
-    }
-    filter.finish()
 }
 
 fn sampler(sensor: Object, files: &mut Files) -> Result<Sampler, LoadError> {

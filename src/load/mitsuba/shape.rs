@@ -4,7 +4,13 @@ use std::path::Path;
 
 use glam::{DAffine3, DVec3};
 
-use super::{colour, files::Files, properties::Object, transform, vocabulary::Class};
+use super::{
+    colour,
+    files::{Files, Placed},
+    properties::Object,
+    transform,
+    vocabulary::Class,
+};
 use crate::{
     load::LoadError,
     scene::{Geometry, MaterialIndex, Rgb, Shape},
@@ -55,13 +61,14 @@ fn geometry(object: Object, to_world: DAffine3, files: &mut Files) -> Result<Geo
             }
             Geometry::Cylinder { p0, p1, radius: object.positive("radius", 1.0)? }
         }
-        "obj" | "ply" => {
+        "obj" | "ply" | "serialized" => {
             if to_world.matrix3.determinant() < 0.0 {
                 files.warnings.push(object.span("to_world").warning(
                     "a mirroring transform turns the winding of the mesh, and its geometric normals, round",
                 ));
             }
-            Geometry::Mesh { mesh: files.mesh(object)?, face_normals: object.boolean("face_normals", false)? }
+            let Placed { mesh, face_normals } = files.mesh(object)?;
+            Geometry::Mesh { mesh, face_normals: object.boolean("face_normals", false)? || face_normals }
         }
         _ => return Err(object.unknown_plugin()),
     })

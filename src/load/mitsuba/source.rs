@@ -63,8 +63,8 @@ impl Span {
         Warning { place, message: message.into() }
     }
 
-    /// A file name as this piece's file means it: relative to that file's folder.
-    pub(super) fn resolve(&self, file_name: &str) -> PathBuf {
+    /// A name taken as relative to the folder of this piece's file.
+    pub(super) fn beside(&self, file_name: &str) -> PathBuf {
         self.source.path.parent().unwrap_or(Path::new("")).join(file_name)
     }
 }

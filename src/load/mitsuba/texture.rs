@@ -68,7 +68,13 @@ pub(super) fn number(
     if let Some(&Value::Object(index)) = object.value(name)
         && object.at(index).class() == Class::Texture
     {
-        return build(object.at(index), range, files);
+        return Ok(match build(object.at(index), range, files)? {
+            // Mitsuba exchanges the fields where a checkerboard is asked for one number, not for a colour.
+            Texture::Checkerboard { color0, color1, to_uv } => {
+                Texture::Checkerboard { color0: color1, color1: color0, to_uv }
+            }
+            texture => texture,
+        });
     }
     let number = match range {
         Range::Positive => object.positive(name, f64::from(default))?,

@@ -40,11 +40,11 @@ impl Class {
     pub(super) fn supported(self) -> &'static [&'static str] {
         match self {
             Self::Scene => &[],
-            Self::Integrator => &["path", "direct", "aov", "whitted", "ao", "irradiance"],
-            Self::Sensor => &["perspective", "orthographic"],
+            Self::Integrator => &["path", "direct", "aov", "moment", "whitted", "ao", "irradiance"],
+            Self::Sensor => &["perspective", "thinlens", "orthographic"],
             Self::Sampler => &["independent", "stratified", "multijitter", "orthogonal", "ldsampler"],
             Self::Film => &["hdrfilm"],
-            Self::RFilter => &["box", "gaussian"],
+            Self::RFilter => &["box", "gaussian", "tent", "mitchell", "catmullrom", "lanczos"],
             Self::Bsdf => &[
                 "diffuse",
                 "conductor",
@@ -66,7 +66,7 @@ impl Class {
             ],
             Self::Texture => &["bitmap", "checkerboard"],
             Self::Emitter => &["area", "point", "spot", "directional", "constant", "envmap", "shlight"],
-            Self::Shape => &["sphere", "rectangle", "cube", "disk", "cylinder", "obj", "ply"],
+            Self::Shape => &["sphere", "rectangle", "cube", "disk", "cylinder", "obj", "ply", "serialized"],
         }
     }
 
@@ -78,7 +78,6 @@ impl Class {
                 "volpath",
                 "volpathmis",
                 "depth",
-                "moment",
                 "stokes",
                 "ptracer",
                 "prb",
@@ -87,10 +86,10 @@ impl Class {
                 "prb_projective",
                 "direct_projective",
             ],
-            Self::Sensor => &["thinlens", "distant", "radiancemeter", "irradiancemeter", "batch"],
+            Self::Sensor => &["distant", "radiancemeter", "irradiancemeter", "batch"],
             Self::Sampler => &[],
             Self::Film => &["specfilm"],
-            Self::RFilter => &["tent", "mitchell", "catmullrom", "lanczos"],
+            Self::RFilter => &[],
             Self::Bsdf => &[
                 "thindielectric",
                 "hair",
@@ -106,7 +105,6 @@ impl Class {
             Self::Texture => &["mesh_attribute", "volume"],
             Self::Emitter => &["sunsky", "projector", "directionalarea", "volumelight", "sky", "sun"],
             Self::Shape => &[
-                "serialized",
                 "blender",
                 "bsplinecurve",
                 "linearcurve",
@@ -123,7 +121,7 @@ impl Class {
     /// Every element that may stand in an object, for suggestions.
     pub(super) fn elements() -> impl Iterator<Item = &'static str> {
         let objects = Self::ALL.iter().map(|&(name, _)| name);
-        objects.chain(PROPERTIES.iter().copied()).chain(["default", "ref", "include"])
+        objects.chain(PROPERTIES.iter().copied()).chain(["default", "ref", "include", "path", "alias"])
     }
 }
 
@@ -139,8 +137,7 @@ pub(super) const PROPERTIES: [&str; 9] =
     ["integer", "float", "boolean", "string", "point", "vector", "rgb", "spectrum", "transform"];
 
 /// Elements that Mitsuba has and packlight does not.
-pub(super) const FOREIGN_ELEMENTS: [&str; 7] =
-    ["alias", "path", "medium", "phase", "volume", "animation", "tensor"];
+pub(super) const FOREIGN_ELEMENTS: [&str; 5] = ["medium", "phase", "volume", "animation", "tensor"];
 
 /// The known word most like a misspelt one, if any is alike.
 pub(super) fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
