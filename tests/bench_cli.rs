@@ -259,3 +259,16 @@ fn a_scene_brings_its_own_rays_and_saves_them() {
         assert_eq!(again["invalid"], 0);
     }
 }
+
+#[test]
+fn the_picture_of_1979_tells_its_factors() {
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/whitted.xml");
+    let [frame] = &lines(&[scene, "--whitted", "--repeat", "1", "--json"])[..] else { panic!("one line") };
+    let number = |key: &str| frame[key].as_f64().unwrap_or_else(|| panic!("{key}"));
+    assert_eq!((number("width"), number("height")), (512.0, 512.0));
+    assert!(number("rays") > 2.0 * 512.0 * 512.0, "every camera ray that hits asks for a shadow ray");
+    let seconds = number("milliseconds") / 1e3;
+    assert!((number("times_vax_1980") * seconds / 4440.0 - 1.0).abs() < 1e-9);
+    assert!((number("times_pc_2006") * seconds / 6.0 - 1.0).abs() < 1e-9);
+    refused(&[scene, "--whitted", "--way", "tile"], 2, "--whitted");
+}

@@ -1,6 +1,7 @@
 //! `packlight bench`: how fast rays are traced, the scene's own or those of a file.
 
 mod row;
+mod whitted;
 
 use std::{fs, path::PathBuf, sync::Arc};
 
@@ -53,6 +54,11 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR", conflicts_with = "rays")]
     save_rays: Option<PathBuf>,
 
+    /// The picture of 1979 in place of rays: 512 x 512, one sample a pixel, recursion; its time beside those of
+    /// 1980 and 2006
+    #[arg(long, requires = "scene", conflicts_with_all = ["rays", "save_rays", "mesh", "way"])]
+    whitted: bool,
+
     /// Threads; one a core if not given
     #[arg(long, value_name = "N", value_parser = threads::count())]
     threads: Option<usize>,
@@ -75,7 +81,11 @@ pub(super) struct Arguments {
 
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    threads::pool(arguments.threads)?.install(|| bench(arguments))
+    let pool = threads::pool(arguments.threads)?;
+    if arguments.whitted {
+        return pool.install(|| whitted::run(arguments));
+    }
+    pool.install(|| bench(arguments))
 }
 
 fn bench(arguments: &Arguments) -> Result<(), Failure> {
