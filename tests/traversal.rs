@@ -5,6 +5,8 @@
 
 #[path = "traversal/aim.rs"]
 mod aim;
+#[path = "traversal/placed.rs"]
+mod placed;
 #[path = "traversal/scenes.rs"]
 mod scenes;
 
@@ -253,4 +255,63 @@ fn a_thousand_equal_triangles() {
 fn triangles_without_area_are_never_hit() {
     let seen = check("degenerate", &scenes::degenerate(), 100);
     assert_eq!(seen.hits, 0);
+}
+
+#[test]
+fn instances_everywhere() {
+    let groups: [(&str, &dyn Fn() -> SceneDescription); 3] = [
+        ("soup", &|| scenes::soup(300)),
+        ("mixed", &|| scenes::mixed(100)),
+        ("quads", &scenes::quads),
+    ];
+    for (name, group) in groups {
+        let seen = check(name, &placed::everywhere(group), 250);
+        assert!(seen.hits * 4 > seen.rays, "{name}: {seen:?}");
+    }
+}
+
+#[test]
+fn an_instance_is_what_its_group_is_elsewhere() {
+    let description = placed::everywhere(&placed::any_map);
+    let flat = placed::flattened(&description);
+    let (scene, flat) = (compile(&description).unwrap(), compile(&flat).unwrap());
+    let rays = rays_at(&targets(&description), 200, &mut Random::new(5));
+    let own = scenes::quads().shapes.len() as u32 * 2;
+    let mut traversal = Traversal::new(());
+    let (mut hits, mut others, mut inside) = (0, 0, 0);
+    // Rays that leave a surface, or are as long as a space can be, are a matter of rounding.
+    for ray in rays.iter().filter(|ray| (1e-3..1e3).contains(&ray.dir.length()) && ray.org.length() < 1e3) {
+        let (a, b) = (scene.closest_hit(ray, &mut traversal), flat.closest_hit(ray, &mut traversal));
+        hits += 1;
+        let size = (ray.org.length() + a.t.min(1e3) * ray.dir.length()).max(1.0);
+        if (a.primitive == PrimitiveId::NONE) != (b.primitive == PrimitiveId::NONE)
+            || (a.t - b.t).abs() * ray.dir.length() > 1e-5 * size
+        {
+            others += 1;
+            continue;
+        }
+        if a.primitive == PrimitiveId::NONE || a.primitive.0 < own {
+            continue;
+        }
+        inside += 1;
+        let line = (ray.org.into(), ray.dir.into());
+        let at = |scene: &Scene, hit: Hit| {
+            scene.surface::<f32>(line, (hit.t, hit.u, hit.v), hit.primitive.0, true)
+        };
+        let (p, q) = (at(&scene, a), at(&flat, b));
+        let vec = |v: Vector3<f32>| Vec3::from(v);
+        assert!((vec(p.position) - vec(q.position)).length() < 1e-4 * size, "{p:?}\n{q:?}");
+        assert_eq!(scene.material(a.primitive, a.u), flat.material(b.primitive, b.u));
+        // Where two surfaces are met at one place, either may be seen.
+        let like = |a: Vec3, b: Vec3| (a - b).length() < 2e-2 * a.length().max(b.length());
+        let uv = (p.uv.0 - q.uv.0).abs() < 1e-2 && (p.uv.1 - q.uv.1).abs() < 1e-2;
+        let same = uv
+            && like(vec(p.n_g), vec(q.n_g))
+            && like(vec(p.frame.n), vec(q.frame.n))
+            && like(vec(p.frame.s), vec(q.frame.s))
+            && (0..2).all(|k| like(vec(p.partials[k]), vec(q.partials[k])));
+        others += usize::from(!same);
+    }
+    println!("{hits} rays, {inside} at instances, {others} that rounding decides");
+    assert!(inside * 4 > hits && others * 100 < hits, "{hits} {inside} {others}");
 }

@@ -104,7 +104,7 @@ fn vertex<I: Integrator>(
         integrator.miss(scene, path, ray.dir.into(), &mut said);
         return said;
     }
-    let material = scene.material(hit.primitive);
+    let material = scene.material(hit.primitive, hit.u);
     let line = (ray.org.into(), ray.dir.into());
     let vertex = Vertex::new(scene, *path, line, (hit.t, hit.u, hit.v), hit.primitive.0, material);
     integrator.shade(scene, &vertex, &mut said);

@@ -66,7 +66,9 @@ impl Class {
             ],
             Self::Texture => &["bitmap", "checkerboard"],
             Self::Emitter => &["area", "point", "spot", "directional", "constant"],
-            Self::Shape => &["sphere", "rectangle", "cube", "disk", "cylinder", "obj", "ply"],
+            Self::Shape => {
+                &["sphere", "rectangle", "cube", "disk", "cylinder", "obj", "ply", "shapegroup", "instance"]
+            }
         }
     }
 
@@ -113,8 +115,6 @@ impl Class {
                 "bsplinecurve",
                 "linearcurve",
                 "sdfgrid",
-                "shapegroup",
-                "instance",
                 "merge",
                 "ellipsoids",
                 "ellipsoidsmesh",
