@@ -88,9 +88,12 @@ impl Instances {
             Ok(Placed { group: instance.group.0, placement })
         };
         let placed = instances.par_iter().map(place).collect::<Result<Vec<_>, _>>()?;
-        references.extend((first..).zip(&placed).filter(|(_, placed)| !parts[placed.group as usize].is_empty()).map(
-            |(index, placed)| Reference { bounds: placed.placement.bounds, index, class: INSTANCE },
-        ));
+        references.extend(
+            (first..)
+                .zip(&placed)
+                .filter(|(_, placed)| !parts[placed.group as usize].is_empty())
+                .map(|(index, placed)| Reference { bounds: placed.placement.bounds, index, class: INSTANCE }),
+        );
         Ok(Self { groups, placed, first, slots: vec![] })
     }
 
@@ -157,8 +160,7 @@ impl Instances {
         let Some((placement, number, group)) = self.at(slot) else { return };
         let Some(entered) = placement.enter(&RayLanes { t_far: hit.t, ..*ray }, active) else { return };
         let none = u32x8::splat(PrimitiveId::NONE.0);
-        let mut inside =
-            Hitx8 { t: entered.ray.t_far, u: f32x8::zero(), v: f32x8::zero(), primitive: none };
+        let mut inside = Hitx8 { t: entered.ray.t_far, u: f32x8::zero(), v: f32x8::zero(), primitive: none };
         BELOW.with_borrow_mut(|below| {
             let (leaves, lanes) = (&group.primitives, entered.lanes);
             group.bvh.intersect_packet::<ANY, _, ()>(leaves, &entered.ray, lanes, &mut inside, below);
@@ -222,8 +224,7 @@ impl Instances {
         if entered.lanes {
             trace(group, &entered.ray.lane(0), &mut inside);
         }
-        let found =
-            if ANY { inside.t == f32::NEG_INFINITY } else { inside.primitive != PrimitiveId::NONE };
+        let found = if ANY { inside.t == f32::NEG_INFINITY } else { inside.primitive != PrimitiveId::NONE };
         if found {
             let what = f32::from_bits(inside.primitive.0);
             accept_single::<ANY>(hit, (entered.clamp(inside.t), what, 0.0), number);

@@ -1,7 +1,9 @@
 //! Scenes in which groups are placed by instances.
 
 use glam::{DAffine3, DMat3, DVec3};
-use packlight::scene::{Geometry, GroupIndex, Instance, Material, MaterialIndex, SceneDescription, ShapeGroup};
+use packlight::scene::{
+    Geometry, GroupIndex, Instance, Material, MaterialIndex, SceneDescription, ShapeGroup,
+};
 
 use crate::scenes;
 
@@ -27,13 +29,20 @@ fn maps() -> Vec<DAffine3> {
     ]
 }
 
+/// The group that can't be hit.
+pub(crate) const DEGENERATE: GroupIndex = GroupIndex(2);
+
 /// Two groups that hold something, one that is empty and one that can't be hit, beside shapes of the scene.
 pub(crate) fn everywhere(of: &dyn Fn() -> SceneDescription) -> SceneDescription {
     let group = |shapes| ShapeGroup { name: "group".into(), shapes };
     let mut scene = scenes::quads();
     scene.materials.push(Material::default());
-    scene.groups =
-        vec![group(of().shapes), group(vec![]), group(scenes::degenerate().shapes), group(scenes::soup(3).shapes)];
+    scene.groups = vec![
+        group(of().shapes),
+        group(vec![]),
+        group(scenes::degenerate().shapes),
+        group(scenes::soup(3).shapes),
+    ];
     scene.groups[3].shapes[0].material = MaterialIndex(1);
     let places = maps().into_iter().enumerate();
     scene.instances = places
@@ -45,15 +54,15 @@ pub(crate) fn everywhere(of: &dyn Fn() -> SceneDescription) -> SceneDescription 
     scene
 }
 
-/// A soup, disks, cylinders and cubes in one group.
+/// A soup, disks and cubes in one group; what is round has to be placed to be oval.
 pub(crate) fn any_map() -> SceneDescription {
     let mut group = scenes::mixed(60);
-    group.shapes.retain(|shape| !matches!(shape.geometry, Geometry::Sphere { .. }));
+    group.shapes.retain(|shape| matches!(shape.geometry, Geometry::Disk | Geometry::Cube));
     group.shapes.extend(scenes::soup(60).shapes);
     group
 }
 
-/// The same surfaces, each a shape of the scene: the groups' spheres must be under similarities.
+/// The same surfaces, each a shape of the scene.
 pub(crate) fn flattened(scene: &SceneDescription) -> SceneDescription {
     let mut flat = SceneDescription { groups: vec![], instances: vec![], ..scene.clone() };
     for instance in &scene.instances {

@@ -8,7 +8,8 @@ use crate::geometry::{Aabb, Affine, Placement};
 /// Boxes that together hold all of a group's tree: up to 64, from the second level of nodes, so that a turned
 /// instance has a box not much larger than what is in it.
 pub(super) fn parts(bvh: &Bvh) -> Vec<Aabb> {
-    let boxes = |node: &Node| [0, 1, 2, 3, 4, 5, 6, 7].map(|i| (node.child_bounds(i), node.children[i].kind()));
+    let boxes =
+        |node: &Node| [0, 1, 2, 3, 4, 5, 6, 7].map(|i| (node.child_bounds(i), node.children[i].kind()));
     let Some(root) = bvh.nodes().first() else { return vec![] };
     let below = boxes(root).into_iter().flat_map(|(bounds, kind)| match kind {
         Kind::Absent => vec![],
@@ -46,7 +47,8 @@ pub(super) fn place(to_world: &DAffine3, parts: &[Aabb]) -> Option<Placement> {
     let shifts = [to_world, &inverse].map(|map| map.translation.abs().max_element());
     let greatest = sizes.into_iter().chain(shifts).fold((reach + slack).max_element(), f64::max);
     // NaN is not less than anything.
-    let holds = greatest < LIMIT && (reach + slack).is_finite() && shifts.iter().all(|shift| shift.is_finite());
+    let holds =
+        greatest < LIMIT && (reach + slack).is_finite() && shifts.iter().all(|shift| shift.is_finite());
     holds.then(|| Placement { to_group: Affine::from(&inverse), to_world: Affine::from(to_world), bounds })
 }
 

@@ -21,7 +21,8 @@ impl Builder {
         let group = match object.children(Class::Shape)[..] {
             [group] if group.plugin() == GROUP => group,
             [other] => {
-                let error = other.error(format!("an `{INSTANCE}` places a `{GROUP}`, not a `{}`", other.plugin()));
+                let error =
+                    other.error(format!("an `{INSTANCE}` places a `{GROUP}`, not a `{}`", other.plugin()));
                 return Err(error.help(format!("put the shape into a <shape type=\"{GROUP}\" id=\"…\">")));
             }
             [] => {
