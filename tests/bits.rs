@@ -28,6 +28,7 @@ use packlight::{
 /// instruction set only, is a broken contract, and no hash is to be taken from it.
 const FROZEN: &[(&str, u64)] = &[
     ("cornell", 0x32a0_1a69_46e9_97eb),
+    ("instances", 0x6405_fa19_3b2c_8eb8),
     ("materials", 0x1bb6_f28c_6ae1_5414),
     ("mesh", 0xf9c1_a1dc_3503_9fbb),
     ("spheres", 0x21e4_89b2_3669_2b6b),
@@ -186,7 +187,7 @@ fn every_instruction_set_gives_the_frozen_picture() {
 fn the_scenes_between_them_have_everything() {
     let read = |(_, path): &(String, PathBuf)| fs::read_to_string(path).expect("a scene can be read");
     let text: String = scenes().iter().map(read).collect();
-    let shapes = ["sphere", "rectangle", "cube", "disk", "cylinder", "obj", "ply"];
+    let shapes = ["sphere", "rectangle", "cube", "disk", "cylinder", "obj", "ply", "shapegroup", "instance"];
     let materials = [
         "diffuse",
         "conductor",

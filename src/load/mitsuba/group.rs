@@ -50,8 +50,9 @@ impl Builder {
         let mut group = ShapeGroup { name: object.id().unwrap_or(GROUP).to_owned(), shapes: vec![] };
         for shape in object.children(Class::Shape) {
             if let plugin @ (GROUP | INSTANCE) = shape.plugin() {
+                let article = if plugin == GROUP { "a" } else { "an" };
                 return Err(shape
-                    .error(format!("a `{plugin}` can't stand in a `{GROUP}`"))
+                    .error(format!("{article} `{plugin}` can't stand in a `{GROUP}`"))
                     .label("groups don't nest")
                     .help("place its shapes in this group themselves"));
             }
