@@ -29,6 +29,7 @@ use packlight::{
 const FROZEN: &[(&str, u64)] = &[
     ("cornell", 0x32a0_1a69_46e9_97eb),
     ("harmonics", 0xe155_45d8_dad9_f219),
+    ("instances", 0x6405_fa19_3b2c_8eb8),
     ("materials", 0x0bfd_e89b_899e_cead),
     ("mesh", 0x0a6d_2803_26e4_3f69),
     ("sky", 0xc2d0_ecd2_0935_bc66),
@@ -253,7 +254,7 @@ fn every_instruction_set_gives_the_frozen_picture() {
 fn the_scenes_between_them_have_everything() {
     let read = |(_, path): &(String, PathBuf)| fs::read_to_string(path).expect("a scene can be read");
     let text: String = scenes().iter().map(read).collect();
-    let shapes = ["sphere", "rectangle", "cube", "disk", "cylinder", "obj", "ply"];
+    let shapes = ["sphere", "rectangle", "cube", "disk", "cylinder", "obj", "ply", "shapegroup", "instance"];
     let materials = [
         "diffuse",
         "conductor",

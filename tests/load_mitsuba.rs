@@ -376,8 +376,8 @@ fn elements_and_types_that_are_wrong_are_refused() {
         ("<shape type='cone'/>", "3:14: there is no shape `cone` | supported shapes are `sphere`, "),
         ("<shape type='spere'/>", "3:14: there is no shape `spere` | did you mean `sphere`? "),
         (
-            "<shape type='instance'/>",
-            "3:14: the shape `instance` is not supported yet | supported shapes are ",
+            "<shape type='serialized'/>",
+            "3:14: the shape `serialized` is not supported yet | supported shapes are ",
         ),
         (
             "<bsdf type='thindielectric' id='x'/>",
@@ -744,4 +744,74 @@ fn the_offending_text_is_underlined() {
     let error = load_text_with(&text, &[]).unwrap_err();
     let span = *error.labels().unwrap().next().unwrap().inner();
     assert_eq!(&text[span.offset()..span.offset() + span.len()], "difuse");
+}
+
+/// A group `g` of `inside`.
+fn group(inside: &str) -> String {
+    format!("<shape type='shapegroup' id='g'>{inside}</shape>")
+}
+
+#[test]
+fn a_group_is_drawn_where_it_is_placed() {
+    let place =
+        "<shape type='instance'><ref id='g'/><transform name='to_world'><scale x='-2'/></transform></shape>";
+    // An instance may stand before its group.
+    let scene = load_body(&format!(
+        "{place}{}{place}<shape type='cube'/>",
+        group("<shape type='cube'><bsdf type='plastic'/></shape><shape type='sphere'/>")
+    ));
+    assert_eq!((scene.shapes.len(), scene.groups.len(), scene.instances.len()), (1, 1, 2));
+    let ShapeGroup { name, shapes } = &scene.groups[0];
+    assert_eq!((name.as_str(), shapes.len()), ("g", 2));
+    assert!(matches!(scene.materials[shapes[0].material.0 as usize], Material::Plastic { .. }));
+    assert_eq!(shapes[1].material, scene.shapes[0].material);
+    assert!(scene.instances.iter().all(|instance| instance.group == GroupIndex(0)));
+    assert_eq!(scene.instances[1].to_world.matrix3.determinant(), -2.0);
+    assert_eq!(warnings(&self::scene(&group("<shape type='cube'/>")))[0], "the shape `g` is never used");
+}
+
+#[test]
+fn groups_and_instances_that_are_wrong_are_refused() {
+    for (body, expected) in [
+        ("<shape type='instance'/>".to_owned(), "3:2: this `instance` places nothing | write <ref id="),
+        (
+            "<shape type='instance'><shape type='cube'/></shape>".to_owned(),
+            "3:25: an `instance` places a `shapegroup`, not a `cube` | put the shape into a <shape type=",
+        ),
+        (
+            group("<shape type='cube'/>") + "\n<shape type='instance'><ref id='g'/><ref id='g'/></shape>",
+            "3:2: an `instance` places one `shapegroup`, not several | ",
+        ),
+        (
+            group("<shape type='cube'/>")
+                + "\n<shape type='instance'><ref id='g'/><bsdf type='diffuse'/></shape>",
+            "4:38: the shape `instance` takes no bsdf | ",
+        ),
+        (
+            group("<shape type='cube'/>")
+                + "\n<shape type='instance'><ref id='g'/><transform name='to_world'><scale x='0'/></transform></shape>",
+            "4:38: ",
+        ),
+        (
+            group("<shape type='cube'><emitter type='area'/></shape>"),
+            "3:54: a shape in a `shapegroup` can't shine | let the shape that shines stand in the scene itself",
+        ),
+        (
+            group("<shape type='shapegroup'/>"),
+            "3:35: a `shapegroup` can't stand in a `shapegroup` | place its shapes in this group",
+        ),
+        (
+            group("<shape type='cube'/>")
+                + "\n<shape type='shapegroup'><shape type='instance'><ref id='g'/></shape></shape>",
+            "4:27: an `instance` can't stand in a `shapegroup` | ",
+        ),
+        (group("<bsdf type='diffuse'/>"), "3:35: the shape `shapegroup` takes no bsdf | "),
+        (group("<shape type='spere'/>"), "3:47: there is no shape `spere` | did you mean `sphere`? "),
+        (
+            group("<float name='radius' value='1'/>"),
+            "3:48: the shape `shapegroup` has no property `radius` | ",
+        ),
+    ] {
+        assert_refused(&body, expected);
+    }
 }

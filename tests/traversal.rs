@@ -5,6 +5,8 @@
 
 #[path = "traversal/aim.rs"]
 mod aim;
+#[path = "traversal/placed.rs"]
+mod placed;
 #[path = "traversal/scenes.rs"]
 mod scenes;
 
@@ -12,7 +14,7 @@ use glam::Vec3;
 use packlight::bvh::{Tracer, Traversal, Way};
 use packlight::compile::{Scene, compile};
 use packlight::geometry::{Hit, PrimitiveId, Ray, Ray32, RayLanes, Rayx8};
-use packlight::scene::SceneDescription;
+use packlight::scene::{Instance, SceneDescription};
 use packlight::simd::{Mask8, Real, Vector3, f32x8};
 
 use aim::{Random, rays_at};
@@ -253,4 +255,77 @@ fn a_thousand_equal_triangles() {
 fn triangles_without_area_are_never_hit() {
     let seen = check("degenerate", &scenes::degenerate(), 100);
     assert_eq!(seen.hits, 0);
+}
+
+#[test]
+fn instances_everywhere() {
+    let groups: [(&str, &dyn Fn() -> SceneDescription); 3] =
+        [("soup", &|| scenes::soup(300)), ("mixed", &|| scenes::mixed(100)), ("quads", &scenes::quads)];
+    for (name, group) in groups {
+        let seen = check(name, &placed::everywhere(group), 250);
+        assert!(seen.hits * 4 > seen.rays, "{name}: {seen:?}");
+    }
+}
+
+const RAYS: usize = 4000;
+/// Triangles of a hundredth stand at 1.5: rounding of positions is thousandths of them.
+const CLOSE: f32 = 1e-2;
+
+#[test]
+fn an_instance_is_what_its_group_is_elsewhere() {
+    let mut description = placed::everywhere(&placed::any_map);
+    // What is a thousandth of its distance from the origin has a thousandth of its bits in float coordinates.
+    // And points and lines, moved, have an area by rounding.
+    let fine = |instance: &Instance| {
+        instance.to_world.matrix3.determinant().abs() > 1e-2 && instance.group != placed::DEGENERATE
+    };
+    description.instances.retain(fine);
+    let flat = placed::flattened(&description);
+    let (scene, flat) = (compile(&description).unwrap(), compile(&flat).unwrap());
+    let own = scenes::quads().shapes.len() as u32 * 2;
+    let targets = targets(&description);
+    let mut random = Random::new(5);
+    let mut traversal = Traversal::new(());
+    let (mut inside, mut others) = (0, 0);
+    for _ in 0..RAYS {
+        // At the inside of something: which side of an edge a ray passes is a matter of rounding.
+        let [a, b, c] = targets[random.below(targets.len())];
+        let (s, t) = (0.1 + 0.4 * random.unit(), 0.1 + 0.4 * random.unit());
+        let org = random.vector() * 3.0;
+        let ray = Ray::new(org, a + (b - a) * s + (c - a) * t - org, 0.0, f32::INFINITY);
+        let (a, b) = (scene.closest_hit(&ray, &mut traversal), flat.closest_hit(&ray, &mut traversal));
+        if a.primitive == PrimitiveId::NONE || a.primitive.0 < own {
+            others += usize::from(a.primitive != b.primitive);
+            continue;
+        }
+        inside += 1;
+        let line = (ray.org.into(), ray.dir.into());
+        let at = |scene: &Scene, hit: Hit| {
+            scene.surface::<f32>(line, (hit.t, hit.u, hit.v), hit.primitive.0, true)
+        };
+        if b.primitive == PrimitiveId::NONE || (a.t - b.t).abs() > 1e-4 * a.t {
+            others += 1;
+            continue;
+        }
+        let (p, q) = (at(&scene, a), at(&flat, b));
+        let size = ray.org.length() + a.t * ray.dir.length();
+        let like = |a: Vector3<f32>, b: Vector3<f32>, to: f32| Vec3::from(a - b).length() < CLOSE * to;
+        let partial = |k: usize| {
+            let (a, b) = (p.partials[k], q.partials[k]);
+            like(a, b, Vec3::from(a).length())
+        };
+        // A mesh that is mirrored shows the other side, an instance of it the same.
+        let faces = like(p.n_g, q.n_g, 1.0) || like(p.n_g, -q.n_g, 1.0);
+        let same = like(p.position, q.position, 1e-2 * size)
+            && scene.material(a.primitive, a.u) == flat.material(b.primitive, b.u)
+            && (p.uv.0 - q.uv.0).abs() < CLOSE
+            && (p.uv.1 - q.uv.1).abs() < CLOSE
+            && faces
+            && like(p.frame.s, q.frame.s, 1.0)
+            && partial(0)
+            && partial(1);
+        others += usize::from(!same);
+    }
+    println!("{inside} rays at instances, {others} of which rounding decides");
+    assert!(inside * 3 > RAYS && others * 100 < RAYS, "{inside} {others}");
 }

@@ -5,9 +5,10 @@
 //! ([`Leaves`]).
 //!
 //! `build` makes it, by one of three qualities ([`Quality`]). Traversal: tiles of sixty-four rays, packets of
-//! eight, sixteen single rays in turn, or one ray alone, the reference for the others; closest hit and
-//! occlusion from one body each.
+//! eight, sixteen single rays in turn, one ray that meets a tree within another, or one ray and one box at a
+//! time, the reference for the others; closest hit and occlusion from one body each.
 
+mod alone;
 mod beam;
 mod build;
 mod cost;
@@ -53,7 +54,7 @@ pub struct Bvh {
 pub struct Hitx8 {
     /// Distances; for an occlusion query −∞ where something was found.
     pub t: f32x8,
-    /// Barycentric weights of the second vertices.
+    /// Barycentric weights of the second vertices, or as in [`Hit::u`].
     pub u: f32x8,
     /// Barycentric weights of the third vertices.
     pub v: f32x8,

@@ -11,7 +11,7 @@ use super::{
     memory,
     overrides::IntegratorName,
     quality::{QualityName, QualityOption},
-    quantity::{grouped, mebibytes, time},
+    quantity::{counted, grouped, mebibytes, time},
     source::Source,
 };
 use crate::{
@@ -51,6 +51,12 @@ struct Info {
     triangles: u64,
     degenerate_triangles: u64,
     quadrics: u64,
+    groups: u32,
+    instances: u64,
+    /// Primitives of all instances.
+    placed_primitives: u64,
+    /// What an instance adds to what tracing and shading read, its part of the upper tree included.
+    bytes_per_instance: u64,
     materials: u32,
     lights: u32,
     bvh_nodes: u64,
@@ -91,6 +97,10 @@ impl Info {
             triangles: summary.triangles,
             degenerate_triangles: summary.degenerate,
             quadrics: summary.quadrics,
+            groups: summary.groups,
+            instances: summary.instances,
+            placed_primitives: summary.placed,
+            bytes_per_instance: summary.instance_bytes,
             materials: summary.materials,
             lights: summary.lights,
             bvh_nodes: summary.bvh_nodes,
@@ -132,11 +142,22 @@ impl fmt::Display for Info {
             Some(depth) => format!("{}, depth at most {depth}", self.integrator),
             None => self.integrator.clone(),
         };
+        let instances = match self.instances {
+            0 => grouped(0),
+            count => format!(
+                "{} of {}, {} primitives, {} bytes an instance",
+                grouped(count),
+                counted(self.groups, "group"),
+                grouped(self.placed_primitives),
+                grouped(self.bytes_per_instance)
+            ),
+        };
         let rows = [
             ("shapes", grouped(self.shapes as u64)),
             ("triangles", grouped(self.triangles)),
             ("degenerate", grouped(self.degenerate_triangles)),
             ("quadrics", grouped(self.quadrics)),
+            ("instances", instances),
             ("materials", grouped(self.materials.into())),
             ("lights", grouped(self.lights.into())),
             (
@@ -174,16 +195,30 @@ mod tests {
     use super::*;
 
     fn info() -> Info {
-        let summary = Summary { triangles: 69_451, bvh_bytes: 3 << 20, ..Summary::default() };
+        let summary = Summary {
+            triangles: 69_451,
+            bvh_bytes: 3 << 20,
+            groups: 1,
+            instances: 100_000,
+            placed: 6_945_100_000,
+            instance_bytes: 250,
+            ..Summary::default()
+        };
         Info::new("bunny.xml".into(), &SceneDescription::default(), summary, Duration::from_millis(5))
     }
 
     #[test]
     fn the_table_holds_what_was_compiled() {
         let text = info().to_string();
-        for part in
-            ["69,451", "3.0 MiB, medium quality", "768 x 576", "perspective, 42.31 degrees", "path", "f32x8"]
-        {
+        for part in [
+            "69,451",
+            "100,000 of 1 group, 6,945,100,000 primitives, 250 bytes an instance",
+            "3.0 MiB, medium quality",
+            "768 x 576",
+            "perspective, 42.31 degrees",
+            "path",
+            "f32x8",
+        ] {
             assert!(text.contains(part), "{part} is not in\n{text}");
         }
     }

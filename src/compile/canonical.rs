@@ -1,9 +1,9 @@
 //! Spheres, disks and cylinders, in world space.
 
-use glam::{Affine3A, DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 use super::surfaces::{CanonicalRow, SphereRow};
-use crate::geometry::{Aabb, Canonical, CanonicalKind, Sphere};
+use crate::geometry::{Aabb, Affine, Canonical, CanonicalKind, Sphere};
 
 /// A sphere under a similarity.
 pub(super) fn sphere(to_world: &DAffine3, center: DVec3, radius: f64) -> SphereRow {
@@ -54,11 +54,8 @@ fn row(kind: CanonicalKind, to_world: &DAffine3) -> CanonicalRow {
     // Rounding outwards: the surface is inside, however its corners rounded.
     let slack = (bounds.min.abs().max(bounds.max.abs())) * f32::EPSILON;
     let bounds = Aabb { min: bounds.min - slack, max: bounds.max + slack };
-    let inverse = to_world.inverse();
-    let to_canonical =
-        Affine3A::from_mat3_translation(inverse.matrix3.as_mat3(), inverse.translation.as_vec3());
     CanonicalRow {
-        surface: Canonical::new(kind, to_canonical, bounds),
+        surface: Canonical { kind, to_canonical: Affine::from(&to_world.inverse()), bounds },
         axes: [m.x_axis, m.y_axis, m.z_axis].map(DVec3::as_vec3),
         origin: origin.as_vec3(),
         normal: super::mesh::normal_matrix(to_world).z_axis.normalize().as_vec3(),

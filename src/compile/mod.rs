@@ -2,6 +2,7 @@
 
 mod canonical;
 mod filter;
+mod instances;
 mod lights;
 mod materials;
 mod mesh;
@@ -27,6 +28,8 @@ use crate::light::{Light, LightChoice, LightId};
 use crate::material::MaterialTable;
 use crate::scene::{Film, Integrator, Projection, Sampler, SceneDescription, Sensor};
 use crate::texture::TextureTable;
+use instances::Instances;
+use primitives::Primitive;
 use surfaces::Surfaces;
 
 /// A scene ready to be traced.
@@ -68,9 +71,17 @@ pub struct Summary {
     pub materials: u32,
     /// Lights, area lights included.
     pub lights: u32,
-    /// Nodes of the tree.
+    /// Groups of shapes. What is in them counts once above and below.
+    pub groups: u32,
+    /// Places where groups stand.
+    pub instances: u64,
+    /// Primitives that can be hit in all instances, each counted wherever it stands.
+    pub placed: u64,
+    /// Bytes that an instance adds: its maps, its box, its slot and its part of the upper tree.
+    pub instance_bytes: u64,
+    /// Nodes of the tree, and of the groups' trees.
     pub bvh_nodes: u64,
-    /// Bytes that tracing reads: nodes and primitive blocks.
+    /// Bytes that tracing reads: nodes, primitive blocks and instances.
     pub bvh_bytes: u64,
     /// Time from boxes to everything that tracing reads: tree and primitive blocks.
     pub bvh_time: Duration,
@@ -94,6 +105,12 @@ pub enum CompileError {
     /// A coordinate that does not fit 32 bits once it is in the world.
     #[error("shape `{shape}` reaches beyond what 32-bit floats can hold; scale the scene down")]
     OutOfRange {
+        /// Name of the shape, or of the group that is placed.
+        shape: String,
+    },
+    /// A shape that shines in a group.
+    #[error("shape `{shape}` shines, but stands in a group; let it stand in the scene itself")]
+    EmitterInGroup {
         /// Name of the shape.
         shape: String,
     },
@@ -117,10 +134,17 @@ pub fn compile(description: &SceneDescription) -> Result<Scene, CompileError> {
 pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<Scene, CompileError> {
     let (materials, textures, material_ids) = materials::compile(&description.materials);
     let mut lights = lights::without_surface(&description.emitters);
-    let shapes::Shapes { surfaces, references, degenerate } =
+    let shapes::Shapes { surfaces, mut references, degenerate } =
         shapes::compile(&description.shapes, &material_ids, &mut lights)?;
-    let triangles = surfaces.triangles.len() as u64 - degenerate;
-    let quadrics = (surfaces.spheres.len() + surfaces.canonicals.len()) as u64;
+    let first = surfaces.shape_of.len() as u32;
+    let count = u64::from(first) + description.instances.len() as u64;
+    if count > MAX_PRIMITIVES {
+        return Err(CompileError::TooManyPrimitives(count));
+    }
+
+    let start = Instant::now();
+    let instances = Instances::new(description, &material_ids, quality, first, &mut references)?;
+    let bvh_time = start.elapsed();
 
     let bounds = references.iter().fold(Aabb::EMPTY, |bounds, reference| bounds.union(reference.bounds));
     let extent = (bounds.max - bounds.min).max(Vec3::ZERO);
@@ -128,20 +152,26 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
 
     let start = Instant::now();
     let bvh = Bvh::build_with(references, quality);
-    let primitives = Primitives::new(bvh.slots(), |id| surfaces.primitive(id));
-    let bvh_time = start.elapsed();
+    let primitives = Primitives::new(bvh.slots(), instances, |id| match id < first {
+        true => surfaces.primitive(id),
+        false => Primitive::Instance,
+    });
+    let bvh_time = bvh_time + start.elapsed();
 
-    let summary = Summary {
-        triangles,
-        quadrics,
+    let upper = size_of_val(bvh.nodes()) as u64;
+    let mut summary = Summary {
+        triangles: surfaces.triangles.len() as u64 - degenerate,
+        quadrics: surfaces.quadrics(),
         degenerate,
         materials: materials.len() as u32,
         lights: lights.len() as u32,
         bvh_nodes: bvh.nodes().len() as u64,
-        bvh_bytes: (size_of_val(bvh.nodes()) + primitives.bytes()) as u64,
+        bvh_bytes: upper + primitives.bytes() as u64,
         bvh_time,
         quality,
+        ..Summary::default()
     };
+    primitives.instances.add_to(&mut summary, upper as f64 / count.max(1) as f64);
     let environments = (0..lights.len()).filter(|&i| lights[i].is_environment());
     let environments = environments.map(|i| LightId(i as u32)).collect();
     Ok(Scene {

@@ -1,7 +1,9 @@
-//! What can be hit, in leaf order: eight triangles or spheres to a block, in columns.
+//! What can be hit, in leaf order: eight triangles or spheres to a block, in columns; what is rare, one by
+//! one.
 
 use rayon::prelude::*;
 
+use super::instances::Instances;
 use crate::bvh::{BLOCK, Hitx8, Leaves};
 use crate::geometry::{
     Canonical, Hit, Pencils, PrimitiveId, Ray, RayLanes, Rayx8, Sphere, SphereLanes, Triangle, TriangleLanes,
@@ -12,6 +14,7 @@ use crate::simd::{Bits, Mask, Mask8, Real, Vector3, f32x8, u32x8, vector3};
 pub(super) const TRIANGLE: u8 = 0;
 pub(super) const SPHERE: u8 = 1;
 pub(super) const CANONICAL: u8 = 2;
+pub(super) const INSTANCE: u8 = 3;
 
 /// Something that can be hit.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +22,7 @@ pub(super) enum Primitive {
     Triangle(Triangle),
     Sphere(Sphere),
     Canonical(Canonical),
+    Instance,
 }
 
 /// Eight triangles: 320 bytes. Padding has no edges, so its determinant is 0 and it is never hit.
@@ -46,6 +50,7 @@ pub struct Primitives {
     spheres: Vec<SphereBlock>,
     /// One a slot; `None` is padding.
     canonicals: Vec<Option<(Canonical, u32)>>,
+    pub(super) instances: Instances,
 }
 
 fn set(rows: &mut [[f32; 8]; 3], lane: usize, v: glam::Vec3) {
@@ -119,6 +124,7 @@ impl Primitive {
             Self::Triangle(_) => TRIANGLE,
             Self::Sphere(_) => SPHERE,
             Self::Canonical(_) => CANONICAL,
+            Self::Instance => INSTANCE,
         }
     }
 }
@@ -126,11 +132,17 @@ impl Primitive {
 impl Primitives {
     /// Lays the primitives out. `slots` holds indices into `primitives`, `u32::MAX` for padding, in blocks
     /// of one class; the index is the primitive's id.
-    pub(super) fn new(slots: &[u32], primitives: impl Fn(u32) -> Primitive + Sync) -> Self {
+    pub(super) fn new(
+        slots: &[u32],
+        mut instances: Instances,
+        primitives: impl Fn(u32) -> Primitive + Sync,
+    ) -> Self {
         let class = |block: &[u32]| primitives(block[0]).class();
         let blocks: Vec<&[u32]> = slots.chunks(BLOCK).collect();
         let (triangles, rest) = blocks.split_at(blocks.partition_point(|block| class(block) == TRIANGLE));
-        let (spheres, canonicals) = rest.split_at(rest.partition_point(|block| class(block) == SPHERE));
+        let (spheres, rest) = rest.split_at(rest.partition_point(|block| class(block) == SPHERE));
+        let (canonicals, placed) = rest.split_at(rest.partition_point(|block| class(block) == CANONICAL));
+        instances.fill(placed.iter().flat_map(|ids| ids.iter().copied()));
         Self {
             triangles: triangles.par_iter().map(|ids| TriangleBlock::new(ids, &primitives)).collect(),
             spheres: spheres.par_iter().map(|ids| SphereBlock::new(ids, &primitives)).collect(),
@@ -142,10 +154,11 @@ impl Primitives {
                     _ => None,
                 })
                 .collect(),
+            instances,
         }
     }
 
-    /// Bytes that tracing reads.
+    /// Bytes that tracing reads, without those of instances.
     pub fn bytes(&self) -> usize {
         size_of_val(self.triangles.as_slice())
             + size_of_val(self.spheres.as_slice())
@@ -159,6 +172,7 @@ impl Primitives {
         for first in (0..slots as u32).step_by(BLOCK) {
             self.intersect_single::<false>(first, BLOCK as u32, ray, &mut hit);
         }
+        self.instances.brute_force(ray, &mut hit);
         if hit.primitive == PrimitiveId::NONE { Hit::MISS } else { hit }
     }
 
@@ -167,7 +181,13 @@ impl Primitives {
     #[cold]
     #[inline(never)]
     fn intersect_rarely<const ANY: bool>(&self, first: u32, count: u32, ray: Rayx8, mut hit: Hit) -> Hit {
-        self.intersect_single::<ANY>(first, count, &ray.lane(0), &mut hit);
+        match self.place(first) {
+            (INSTANCE, block, lane) => {
+                let slot = block * BLOCK + lane;
+                self.instances.intersect_alone::<ANY>(slot, count as usize, &ray.lane(0), &mut hit);
+            }
+            _ => self.intersect_single::<ANY>(first, count, &ray.lane(0), &mut hit),
+        }
         hit
     }
 
@@ -182,14 +202,18 @@ impl Primitives {
         if block < self.spheres.len() {
             return (SPHERE, block, lane);
         }
-        (CANONICAL, block - self.spheres.len(), lane)
+        let (block, canonicals) = (block - self.spheres.len(), self.canonicals.len() / BLOCK);
+        if block < canonicals {
+            return (CANONICAL, block, lane);
+        }
+        (INSTANCE, block - canonicals, lane)
     }
 }
 
 /// Records hits, where they are closer or tie with a higher id: of a packet with one primitive, or of one
 /// ray with several.
 #[inline]
-fn accept<const ANY: bool>(
+pub(super) fn accept<const ANY: bool>(
     hit: &mut Hitx8,
     found: Mask8,
     (t, u, v): (f32x8, f32x8, f32x8),
@@ -214,7 +238,7 @@ fn accept<const ANY: bool>(
 
 /// Records a ray's hit in the same way.
 #[inline]
-fn accept_single<const ANY: bool>(hit: &mut Hit, (t, u, v): (f32, f32, f32), id: u32) {
+pub(super) fn accept_single<const ANY: bool>(hit: &mut Hit, (t, u, v): (f32, f32, f32), id: u32) {
     let found = Hit { t, u, v, primitive: PrimitiveId(id) };
     if ANY {
         hit.t = f32::NEG_INFINITY;
@@ -253,12 +277,13 @@ impl Leaves for Primitives {
                     let (found, t) = sphere.intersect(&limited, active);
                     accept::<ANY>(hit, found, (t, zero, zero), || u32x8::splat(block.id[lane]));
                 }
-                _ => {
+                CANONICAL => {
                     if let Some((surface, id)) = &self.canonicals[block * BLOCK + lane] {
                         let (found, t) = surface.intersect(&limited, active);
                         accept::<ANY>(hit, found, (t, zero, zero), || u32x8::splat(*id));
                     }
                 }
+                _ => self.instances.intersect_packet::<ANY>(block * BLOCK + lane, ray, active, hit),
             }
         }
     }
@@ -339,13 +364,14 @@ impl Leaves for Primitives {
                         accept_single::<ANY>(hit, (t, 0.0, 0.0), block.id[lane]);
                     }
                 }
-                _ => {
+                CANONICAL => {
                     if let Some((surface, id)) = &self.canonicals[block * BLOCK + lane]
                         && let Some(t) = surface.intersect_ray(&limited)
                     {
                         accept_single::<ANY>(hit, (t, 0.0, 0.0), *id);
                     }
                 }
+                _ => self.instances.intersect_single::<ANY>(block * BLOCK + lane, ray, hit),
             }
         }
     }

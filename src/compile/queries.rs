@@ -77,9 +77,13 @@ impl Scene {
         self.extent
     }
 
-    /// The material of a primitive.
+    /// The material of what was hit; `u` is the hit's.
     #[inline]
-    pub fn material(&self, primitive: PrimitiveId) -> MaterialId {
+    pub fn material(&self, primitive: PrimitiveId, u: f32) -> MaterialId {
+        let instances = &self.primitives.instances;
+        if instances.holds(primitive.0) {
+            return instances.material(primitive, u);
+        }
         self.surfaces.shape(primitive.0).material
     }
 
@@ -93,6 +97,10 @@ impl Scene {
         primitive: R::Bits,
         oriented: bool,
     ) -> Surface<R> {
+        let instances = &self.primitives.instances;
+        if !instances.is_empty() {
+            return instances.surface(&self.surfaces, ray, (tuv, primitive), oriented);
+        }
         self.surfaces.at(ray, tuv, primitive, oriented)
     }
 }

@@ -8,7 +8,7 @@ use crate::material::MaterialId;
 use crate::math::{Frame, INV_PI, INV_TWO_PI, acos, atan2};
 use crate::simd::{Bits, Mask, Real, Vector3, vector3};
 
-mod partials;
+pub(super) mod partials;
 
 /// A vertex in world space: 32 bytes.
 #[derive(Clone, Copy, Debug)]
@@ -98,6 +98,28 @@ pub struct Surface<R: Real> {
     pub light: R::Bits,
 }
 
+impl<R: Real> Surface<R> {
+    /// `if mask { a } else { b }`, lane by lane.
+    #[inline]
+    pub(super) fn select(mask: R::Mask, a: Self, b: Self) -> Self {
+        let select = |a, b| Vector3::select(mask, a, b);
+        let frame = Frame {
+            s: select(a.frame.s, b.frame.s),
+            t: select(a.frame.t, b.frame.t),
+            n: select(a.frame.n, b.frame.n),
+        };
+        Self {
+            position: select(a.position, b.position),
+            extent: select(a.extent, b.extent),
+            n_g: select(a.n_g, b.n_g),
+            frame,
+            partials: [0, 1].map(|k| select(a.partials[k], b.partials[k])),
+            uv: (R::select(mask, a.uv.0, b.uv.0), R::select(mask, a.uv.1, b.uv.1)),
+            light: R::Bits::select(mask, a.light, b.light),
+        }
+    }
+}
+
 /// A part of the answer: what one class of surface contributes.
 struct Part<R> {
     position: Vector3<R>,
@@ -108,6 +130,11 @@ struct Part<R> {
 }
 
 impl Surfaces {
+    /// How many spheres, disks and cylinders there are.
+    pub(super) fn quadrics(&self) -> u64 {
+        (self.spheres.len() + self.canonicals.len()) as u64
+    }
+
     #[inline]
     pub(super) fn shape(&self, primitive: u32) -> &ShapeRow {
         &self.shapes[self.shape_of[primitive as usize] as usize]

@@ -4,10 +4,8 @@
 //! The **disk** is x² + y² ≤ 1, z = 0: t = −o'_z / d'_z. The **cylinder** is x² + y² = 1, 0 ≤ z ≤ 1,
 //! without caps, hit from both sides: the roots of the quadratic in xy, nearest first.
 
-use glam::{Affine3A, Vec3};
-
-use super::{Aabb, Ray, RayLanes, aabb};
-use crate::simd::{Mask, Real, Vector3, vector3};
+use super::{Aabb, Affine, AffineLanes, Ray, RayLanes, aabb};
+use crate::simd::{Mask, Real, Vector3};
 
 /// Which surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,39 +21,24 @@ pub enum CanonicalKind {
 pub struct Canonical {
     /// Which surface.
     pub kind: CanonicalKind,
-    /// Rows of the linear part of world → canonical.
-    pub rows: [Vec3; 3],
-    /// Its translation.
-    pub offset: Vec3,
+    /// World → canonical.
+    pub to_canonical: Affine,
     /// The box that decides hits, world space.
     pub bounds: Aabb,
 }
 
 impl Canonical {
-    /// From the map world → canonical and the surface's world-space box.
-    pub fn new(kind: CanonicalKind, to_canonical: Affine3A, bounds: Aabb) -> Self {
-        let m = to_canonical.matrix3;
-        let rows = [m.row(0), m.row(1), m.row(2)].map(Vec3::from);
-        Self { kind, rows, offset: to_canonical.translation.into(), bounds }
-    }
-
     /// A world point in canonical space.
     #[inline]
     pub fn to_canonical<R: Real>(&self, p: Vector3<R>) -> Vector3<R> {
-        self.to_canonical_direction(p) + Vector3::splat(self.offset)
-    }
-
-    /// A world direction in canonical space.
-    #[inline]
-    pub fn to_canonical_direction<R: Real>(&self, d: Vector3<R>) -> Vector3<R> {
-        let row = |i: usize| Vector3::splat(self.rows[i]).dot(d);
-        vector3(row(0), row(1), row(2))
+        AffineLanes::splat(&self.to_canonical).point(p)
     }
 
     /// One ray or eight: (hit, t) of the lanes in `active`.
     #[inline]
     pub fn intersect<R: Real>(&self, ray: &RayLanes<R>, active: R::Mask) -> (R::Mask, R) {
-        let (o, d) = (self.to_canonical(ray.org), self.to_canonical_direction(ray.dir));
+        let to_canonical = AffineLanes::splat(&self.to_canonical);
+        let (o, d) = (to_canonical.point(ray.org), to_canonical.direction(ray.dir));
         let bounds = (Vector3::splat(self.bounds.min), Vector3::splat(self.bounds.max));
         let all = (R::splat(f32::NEG_INFINITY), R::splat(f32::INFINITY));
         let (low, high) = aabb::interval(bounds, (ray.org, ray.rdir), all);

@@ -9,9 +9,11 @@
 //! zero is parallel.
 
 pub mod aabb;
+mod affine;
 mod canonical;
 mod offset;
 mod pencil;
+mod placement;
 mod ray;
 pub mod ray_file;
 #[cfg(test)]
@@ -20,9 +22,11 @@ mod sphere;
 mod triangle;
 
 pub use aabb::Aabb;
+pub use affine::{Affine, AffineLanes};
 pub use canonical::{Canonical, CanonicalKind};
 pub use offset::{REACH, offset_origin};
 pub use pencil::{EdgePlanes, Pencils};
+pub use placement::{Entered, Placement};
 pub use ray::{Hit, PrimitiveId, Ray, RayLanes, Rayx8};
 pub use ray_file::Ray32;
 pub use sphere::{Sphere, SphereLanes};

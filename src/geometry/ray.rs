@@ -77,7 +77,8 @@ impl<R: Real> RayLanes<R> {
     }
 }
 
-/// Which primitive of the scene, in the order of the description. The order decides ties.
+/// Which primitive of the scene, in the order of the description: those of its shapes, then its instances, one
+/// number each. The order decides ties.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct PrimitiveId(pub u32);
 
@@ -91,9 +92,10 @@ impl PrimitiveId {
 pub struct Hit {
     /// Distance along the ray in units of its direction; +∞ for a miss.
     pub t: f32,
-    /// Barycentric weight of the second vertex; 0 for curved surfaces.
+    /// Barycentric weight of the second vertex; 0 for curved surfaces. In an instance, the number of what was
+    /// hit within its group, as bits.
     pub u: f32,
-    /// Barycentric weight of the third vertex; 0 for curved surfaces.
+    /// Barycentric weight of the third vertex; 0 for curved surfaces and in instances.
     pub v: f32,
     /// What was hit.
     pub primitive: PrimitiveId,

@@ -143,7 +143,7 @@ fn arrive<I: Integrator>(
         integrator.miss(scene, path, line, said);
         return;
     }
-    let material = scene.material(hit.primitive);
+    let material = scene.material(hit.primitive, hit.u);
     let vertex = Vertex::new(scene, *path, line, (hit.t, hit.u, hit.v), hit.primitive.0, material);
     integrator.shade(scene, &vertex, said);
 }

@@ -193,9 +193,10 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
         out.clear(paths.len, integrator.shadow_rays(scene));
         let miss = scene.materials.len() as u32;
         keys.clear();
-        keys.extend(hits.primitive[..paths.len].iter().map(|&primitive| match PrimitiveId(primitive) {
+        let found = hits.primitive[..paths.len].iter().zip(&hits.u);
+        keys.extend(found.map(|(&primitive, &u)| match PrimitiveId(primitive) {
             PrimitiveId::NONE => miss,
-            hit => scene.material(hit).0,
+            hit => scene.material(hit, u).0,
         }));
         let group = |key: u32, slots: &[u32]| {
             statistics.shade_lanes.add(slots.len() as u32);

@@ -15,7 +15,7 @@ pub use emitter::Emitter;
 pub use integrator::{Aov, AovChannel, Integrator};
 pub use material::{Distribution, Material, MerlTable, Metal, Principled, Ramp, Relief, Roughness, Stop};
 pub use sensor::{Crop, Film, Projection, ReconstructionFilter, Sampler, Sensor};
-pub use shape::{Geometry, Mesh, Shape};
+pub use shape::{Geometry, GroupIndex, Instance, Mesh, Shape, ShapeGroup};
 pub use texture::{Filter, Texture, Wrap};
 
 /// A linear sRGB triple: reflectance, radiance, or any other spectral quantity in three bands.
@@ -34,6 +34,10 @@ pub struct SceneDescription {
     pub sensor: Sensor,
     /// Everything that can be hit, in file order: the order decides ties (lowest primitive id).
     pub shapes: Vec<Shape>,
+    /// Shapes that are only where instances place them.
+    pub groups: Vec<ShapeGroup>,
+    /// Groups in the world, after all shapes where the order decides.
+    pub instances: Vec<Instance>,
     /// The reflection models that shapes refer to.
     pub materials: Vec<Material>,
     /// Lights that are not shapes.

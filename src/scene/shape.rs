@@ -23,6 +23,28 @@ pub struct Shape {
     pub radiance: Option<Rgb>,
 }
 
+/// Shapes in a space of their own, which are hit where instances place them.
+#[derive(Clone, Debug, Default)]
+pub struct ShapeGroup {
+    /// For messages: the `id` of the element.
+    pub name: String,
+    /// The group's space is what they call the world. None of them shines.
+    pub shapes: Vec<Shape>,
+}
+
+/// Place of a [`ShapeGroup`] in [`SceneDescription::groups`](super::SceneDescription::groups).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct GroupIndex(pub u32);
+
+/// A group in the world.
+#[derive(Clone, Copy, Debug)]
+pub struct Instance {
+    /// What stands there.
+    pub group: GroupIndex,
+    /// Group to world, any affine map that has an inverse. A map that mirrors leaves outward normals outward.
+    pub to_world: DAffine3,
+}
+
 /// Local-space geometry, its normal and its texture coordinates.
 #[derive(Clone, Debug)]
 pub enum Geometry {

@@ -142,8 +142,13 @@ pub(crate) fn degenerate() -> SceneDescription {
 /// Points on the shapes to aim at.
 pub(crate) fn targets(description: &SceneDescription) -> Targets {
     let mut targets = Targets::new();
-    for shape in &description.shapes {
-        let place = |p: Vec3| shape.to_world.transform_point3(p.as_dvec3()).as_vec3();
+    let own = description.shapes.iter().map(|shape| (DAffine3::IDENTITY, shape));
+    let placed = description.instances.iter().flat_map(|instance| {
+        description.groups[instance.group.0 as usize].shapes.iter().map(|shape| (instance.to_world, shape))
+    });
+    for (to_world, shape) in own.chain(placed) {
+        let to_world = to_world * shape.to_world;
+        let place = |p: Vec3| to_world.transform_point3(p.as_dvec3()).as_vec3();
         match &shape.geometry {
             Geometry::Mesh { mesh, .. } => {
                 let corner = |i: u32| place(mesh.positions[i as usize]);

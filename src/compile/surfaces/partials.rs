@@ -66,7 +66,7 @@ impl Surfaces {
 
 /// A frame about `n` whose first tangent is `along`, as far as it can be.
 #[inline]
-pub(super) fn frame_along<R: Real>(n: Vector3<R>, along: Vector3<R>) -> Frame<R> {
+pub(in crate::compile) fn frame_along<R: Real>(n: Vector3<R>, along: Vector3<R>) -> Frame<R> {
     let any = Frame::around(n);
     let s = (along - n.scale(n.dot(along))).normalize_or(any.s);
     Frame { s, t: n.cross(s), n }

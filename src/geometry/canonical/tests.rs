@@ -1,4 +1,4 @@
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DMat3, DVec3, Vec3};
 
 use super::*;
 use crate::geometry::{
@@ -37,10 +37,7 @@ fn placed(kind: CanonicalKind, to_world: DAffine3) -> Canonical {
     let bounds = Aabb::of_points(ends.iter().flat_map(|&e| [e - reach, e + reach]).map(DVec3::as_vec3));
     let slack = bounds.min.abs().max(bounds.max.abs()) * f32::EPSILON;
     let bounds = Aabb { min: bounds.min - slack, max: bounds.max + slack };
-    let inverse = to_world.inverse();
-    let to_canonical =
-        Affine3A::from_mat3_translation(inverse.matrix3.as_mat3(), inverse.translation.as_vec3());
-    Canonical::new(kind, to_canonical, bounds)
+    Canonical { kind, to_canonical: Affine::from(&to_world.inverse()), bounds }
 }
 
 const KINDS: [CanonicalKind; 2] = [CanonicalKind::Disk, CanonicalKind::Cylinder];

@@ -16,6 +16,7 @@ mod emitter;
 mod files;
 mod film;
 mod folders;
+mod group;
 mod integrator;
 mod parameters;
 mod presets;
@@ -39,7 +40,7 @@ pub(super) use single::{read_by_id, read_line};
 use vocabulary::Class;
 
 use super::{LoadError, Loaded};
-use crate::scene::{Emitter, Integrator, Material, MaterialIndex, Rgb, SceneDescription, Texture};
+use crate::scene::{Emitter, Integrator, Material, MaterialIndex, Rgb, SceneDescription, Shape, Texture};
 
 /// Reads a scene; `defines` are stronger than `<default>`.
 pub(super) fn read_scene(path: &Path, defines: &[(String, String)]) -> Result<Loaded, LoadError> {
@@ -56,6 +57,7 @@ struct Builder {
     description: SceneDescription,
     files: Files,
     materials: Materials,
+    groups: group::Groups,
 }
 
 impl Builder {
@@ -70,11 +72,19 @@ impl Builder {
             }
         }
         for shape in scene.children(Class::Shape) {
-            let shape = shape::build(shape, &mut self.files, |files, bsdf, shines| match bsdf {
-                Some(bsdf) => self.materials.index_of(bsdf, files),
-                None => Ok(self.materials.default(shines)),
-            })?;
-            self.description.shapes.push(shape);
+            match shape.plugin() {
+                group::INSTANCE => self.instance(shape)?,
+                group::GROUP => {
+                    self.group(shape)?;
+                    if !shape.is_referenced() {
+                        self.warn_of_idleness(shape);
+                    }
+                }
+                _ => {
+                    let shape = self.shape(shape)?;
+                    self.description.shapes.push(shape);
+                }
+            }
         }
         // An `area` emitter that shapes refer to may be defined here without shining here.
         let is_definition = |emitter: &Object| emitter.plugin() == "area" && emitter.is_referenced();
@@ -94,6 +104,13 @@ impl Builder {
         self.description.materials = std::mem::take(&mut self.materials.list);
         self.warn_of_darkness(scene);
         Ok(())
+    }
+
+    fn shape(&mut self, shape: Object) -> Result<Shape, LoadError> {
+        shape::build(shape, &mut self.files, |files, bsdf, shines| match bsdf {
+            Some(bsdf) => self.materials.index_of(bsdf, files),
+            None => Ok(self.materials.default(shines)),
+        })
     }
 
     fn sensor(&mut self, scene: Object) -> Result<(), LoadError> {
@@ -122,11 +139,15 @@ impl Builder {
             texture::build(texture, texture::Range::Coefficient, &mut self.files)?;
         }
         for object in bsdfs.iter().chain(&textures).filter(|object| !object.is_referenced()) {
-            let name = object.id().map_or("without an id".into(), |id| format!("`{id}`"));
-            let warning = object.warning(format!("the {} {name} is never used", object.class()));
-            self.files.warnings.push(warning);
+            self.warn_of_idleness(*object);
         }
         Ok(())
+    }
+
+    fn warn_of_idleness(&mut self, object: Object) {
+        let name = object.id().map_or("without an id".into(), |id| format!("`{id}`"));
+        let warning = object.warning(format!("the {} {name} is never used", object.class()));
+        self.files.warnings.push(warning);
     }
 
     fn warn_of_darkness(&mut self, scene: Object) {

@@ -66,7 +66,18 @@ impl Class {
             ],
             Self::Texture => &["bitmap", "checkerboard"],
             Self::Emitter => &["area", "point", "spot", "directional", "constant", "envmap", "shlight"],
-            Self::Shape => &["sphere", "rectangle", "cube", "disk", "cylinder", "obj", "ply", "serialized"],
+            Self::Shape => &[
+                "sphere",
+                "rectangle",
+                "cube",
+                "disk",
+                "cylinder",
+                "obj",
+                "ply",
+                "serialized",
+                "shapegroup",
+                "instance",
+            ],
         }
     }
 
@@ -109,8 +120,6 @@ impl Class {
                 "bsplinecurve",
                 "linearcurve",
                 "sdfgrid",
-                "shapegroup",
-                "instance",
                 "merge",
                 "ellipsoids",
                 "ellipsoidsmesh",
