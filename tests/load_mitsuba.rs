@@ -794,22 +794,22 @@ fn groups_and_instances_that_are_wrong_are_refused() {
         ),
         (
             group("<shape type='cube'><emitter type='area'/></shape>"),
-            "3:54: a shape in a `shapegroup` can't shine | let the shape that shines stand in the scene itself",
+            "3:53: a shape in a `shapegroup` can't shine | let the shape that shines stand in the scene itself",
         ),
         (
             group("<shape type='shapegroup'/>"),
-            "3:35: a `shapegroup` can't stand in a `shapegroup` | place its shapes in this group",
+            "3:34: a `shapegroup` can't stand in a `shapegroup` | place its shapes in this group",
         ),
         (
             group("<shape type='cube'/>")
                 + "\n<shape type='shapegroup'><shape type='instance'><ref id='g'/></shape></shape>",
             "4:27: an `instance` can't stand in a `shapegroup` | ",
         ),
-        (group("<bsdf type='diffuse'/>"), "3:35: the shape `shapegroup` takes no bsdf | "),
-        (group("<shape type='spere'/>"), "3:47: there is no shape `spere` | did you mean `sphere`? "),
+        (group("<bsdf type='diffuse'/>"), "3:34: the shape `shapegroup` takes no bsdf | "),
+        (group("<shape type='spere'/>"), "3:46: there is no shape `spere` | did you mean `sphere`? "),
         (
             group("<float name='radius' value='1'/>"),
-            "3:48: the shape `shapegroup` has no property `radius` | ",
+            "3:46: the shape `shapegroup` has no property `radius` | ",
         ),
     ] {
         assert_refused(&body, expected);
