@@ -29,7 +29,7 @@ use packlight::{
 const FROZEN: &[(&str, u64)] = &[
     ("cornell", 0x32a0_1a69_46e9_97eb),
     ("harmonics", 0xe155_45d8_dad9_f219),
-    ("instances", 0x6405_fa19_3b2c_8eb8),
+    ("instances", 0xebad_1b46_1b59_0991),
     ("materials", 0x0bfd_e89b_899e_cead),
     ("mesh", 0x0a6d_2803_26e4_3f69),
     ("sky", 0xc2d0_ecd2_0935_bc66),

@@ -376,8 +376,8 @@ fn elements_and_types_that_are_wrong_are_refused() {
         ("<shape type='cone'/>", "3:14: there is no shape `cone` | supported shapes are `sphere`, "),
         ("<shape type='spere'/>", "3:14: there is no shape `spere` | did you mean `sphere`? "),
         (
-            "<shape type='serialized'/>",
-            "3:14: the shape `serialized` is not supported yet | supported shapes are ",
+            "<shape type='linearcurve'/>",
+            "3:14: the shape `linearcurve` is not supported yet | supported shapes are ",
         ),
         (
             "<bsdf type='thindielectric' id='x'/>",

@@ -79,7 +79,8 @@ mod tests {
                 }
                 let (low, high) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
                 assert!(low.cmple(min).all() && high.cmpge(max).all(), "{map:?}");
-                let room = 1e-4 * ((max - min).max_element() + shift.abs());
+                let reach = max.abs().max(min.abs()).max_element();
+                let room = 1e-4 * ((max - min).max_element() + reach);
                 assert!((min - low).max((high - max).abs()).max_element() < room, "{map:?}: {bounds:?}");
             }
         }
