@@ -18,7 +18,7 @@ impl From<&DAffine3> for Affine {
     fn from(map: &DAffine3) -> Self {
         let m = map.matrix3;
         Self {
-            rows: [m.row(0), m.row(1), m.row(2)].map(|row| row.as_vec3()),
+            rows: [m.row(0), m.row(1), m.row(2)].map(glam::DVec3::as_vec3),
             offset: map.translation.as_vec3(),
         }
     }
