@@ -158,7 +158,7 @@ fn picture(arguments: &Arguments, output: &Output) -> Result<Report, Failure> {
     if rendered.statistics.time.is_zero() {
         rendered.statistics.time = start.elapsed();
     }
-    let preview = Preview { exposure: arguments.exposure.unwrap_or(0.0) };
+    let preview = Preview { exposure: arguments.exposure.unwrap_or(0.0), ..Preview::default() };
     save(&rendered.picture, &output.path, preview)?;
 
     Ok(Report::from(Sources {

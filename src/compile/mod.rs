@@ -11,12 +11,14 @@ mod queries;
 mod shapes;
 mod streams;
 mod surfaces;
+mod tree;
 
 use std::time::{Duration, Instant};
 
 pub use lights::envmap;
 pub use primitives::Primitives;
 pub use surfaces::Surface;
+pub use tree::TreeShape;
 
 use glam::Vec3;
 
@@ -26,7 +28,7 @@ use crate::film::Filter;
 use crate::geometry::Aabb;
 use crate::light::{Light, LightChoice, LightId};
 use crate::material::MaterialTable;
-use crate::scene::{Film, Integrator, Projection, Sampler, SceneDescription, Sensor};
+use crate::scene::{AovChannel, Film, Integrator, Projection, Sampler, SceneDescription, Sensor};
 use crate::texture::TextureTable;
 use instances::Instances;
 use primitives::Primitive;
@@ -55,6 +57,8 @@ pub struct Scene {
     pub sampler: Sampler,
     /// What is estimated.
     pub integrator: Integrator,
+    /// What the camera sees besides.
+    pub aovs: Vec<AovChannel>,
     summary: Summary,
 }
 
@@ -189,6 +193,7 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
         film: description.sensor.film,
         sampler: description.sensor.sampler,
         integrator: description.integrator.clone(),
+        aovs: description.aovs.clone(),
         summary,
     })
 }

@@ -6,11 +6,13 @@
 
 use bumpalo::{Bump, collections::Vec as BumpVec};
 
+use super::aov::{AovIntegrator, Beside};
 use super::camera_rays;
 use super::columns::{
     Column, Column3, IntColumn, PathColumns, RayColumns, column3, fill, gather, gather3, lane_bits, scatter,
     scatter3,
 };
+use super::frame::Visit;
 use super::integrator::{Integrator, Outgoing, Path};
 use super::sort::{Sorter, for_each_unsorted_group};
 use super::statistics::Statistics;
@@ -18,36 +20,38 @@ use super::trace::{self, HitColumns};
 use super::vertex::Vertex;
 use crate::bvh::Tracer;
 use crate::compile::Scene;
-use crate::film::{Tile, TileFilm};
+use crate::film::Tile;
 use crate::geometry::PrimitiveId;
 use crate::material::MaterialId;
 use crate::simd::{Bits, LANES, Mask8, Real, Vec3x8, f32x8, u32x8};
 
-/// Renders all samples of a tile.
+/// Renders samples of a tile, for as long as the visit has any.
 pub(super) fn render<I: Integrator>(
     scene: &Scene,
     integrator: &I,
     sort: bool,
     tile: &Tile,
-    statistics: &mut Statistics,
-    sample_done: impl Fn(),
-) -> TileFilm {
+    visit: &Visit<'_>,
+) {
+    let Some(mut sample) = visit.next() else { return };
     let arena = Bump::new();
     let pixels = camera_rays::morton(tile);
-    let channels = integrator.channels().len();
-    let mut film = TileFilm::new(tile.len(), channels);
-    let mut wave = Wavefront::new(&arena, scene, integrator, sort, channels);
-    for sample in 0..scene.sampler.sample_count {
+    let mut wave = Wavefront::new(&arena, scene, integrator, sort);
+    loop {
+        let mut statistics = Statistics::default();
         wave.start(tile, &pixels, sample);
-        wave.run(sample, statistics);
-        for (place, &(x, y)) in pixels.iter().enumerate() {
-            let weight = wave.weights[place];
-            film.add((y * tile.width + x) as usize, sample, weight, |c| wave.sums[c][place]);
+        wave.run(sample, &mut statistics);
+        visit.finish(&statistics, |film| {
+            for (place, &(x, y)) in pixels.iter().enumerate() {
+                let weight = wave.weights[place];
+                film.add((y * tile.width + x) as usize, weight, |c| wave.sums[c][place]);
+            }
+        });
+        match visit.next() {
+            Some(next) => sample = next,
+            None => return,
         }
-        statistics.samples += pixels.len() as u64;
-        sample_done();
     }
-    film
 }
 
 /// What one sample of the pixel (x, y) brings to each channel, finite or not.
@@ -59,7 +63,7 @@ pub(super) fn sample<I: Integrator>(
     sample: u32,
 ) -> Vec<f32> {
     let arena = Bump::new();
-    let mut wave = Wavefront::new(&arena, scene, integrator, sort, integrator.channels().len());
+    let mut wave = Wavefront::new(&arena, scene, integrator, sort);
     wave.start(&Tile { x, y, width: 1, height: 1 }, &[(0, 0)], sample);
     wave.run(sample, &mut Statistics::default());
     wave.sums.iter().map(|sum| sum[0]).collect()
@@ -68,6 +72,9 @@ pub(super) fn sample<I: Integrator>(
 struct Wavefront<'a, I> {
     scene: &'a Scene,
     integrator: &'a I,
+    /// Channels of the integrator, before those of what the camera sees besides.
+    lit: usize,
+    beside: Option<AovIntegrator>,
     sort: bool,
     tracer: Tracer,
     paths: PathColumns<'a>,
@@ -101,11 +108,14 @@ struct Outputs<'a> {
 }
 
 impl<'a, I: Integrator> Wavefront<'a, I> {
-    fn new(arena: &'a Bump, scene: &'a Scene, integrator: &'a I, sort: bool, channels: usize) -> Self {
+    fn new(arena: &'a Bump, scene: &'a Scene, integrator: &'a I, sort: bool) -> Self {
+        let (lit, channels) = (integrator.channels().len(), integrator.all_channels(scene).len());
         let planes = || BumpVec::from_iter_in((0..channels).map(|_| BumpVec::new_in(arena)), arena);
         Self {
             scene,
             integrator,
+            lit,
+            beside: (channels > lit).then(|| AovIntegrator { channels: scene.aovs.clone() }),
             sort,
             tracer: Tracer::new(()),
             paths: PathColumns::new(arena),
@@ -162,7 +172,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
                 self.shade(depth, sample, statistics);
             }
             self.connect(statistics);
-            self.add();
+            self.add(depth);
             self.advance();
             depth += 1;
         }
@@ -178,7 +188,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     /// The first round of paths that begin without a camera.
     fn begin(&mut self, sample: u32, statistics: &mut Statistics) {
         let Self { scene, integrator, paths, out, .. } = self;
-        out.clear(paths.len, integrator.shadow_rays(scene));
+        out.clear(paths.len, integrator.shadow_rays(scene), usize::MAX);
         let all: BumpVec<u32> = BumpVec::from_iter_in(0..paths.len as u32, out.kept.bump());
         for slots in all.chunks(LANES) {
             statistics.shade_lanes.add(slots.len() as u32);
@@ -189,8 +199,10 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     }
 
     fn shade(&mut self, depth: u32, sample: u32, statistics: &mut Statistics) {
-        let Self { scene, integrator, paths, hits, keys, sorter, out, .. } = self;
-        out.clear(paths.len, integrator.shadow_rays(scene));
+        let Self { scene, integrator, lit, beside, paths, hits, keys, sorter, out, .. } = self;
+        let beside = beside.as_ref().filter(|_| depth == 0);
+        let channels = if depth == 0 { usize::MAX } else { *lit };
+        out.clear(paths.len, integrator.shadow_rays(scene), channels);
         let miss = scene.materials.len() as u32;
         keys.clear();
         let found = hits.primitive[..paths.len].iter().zip(&hits.u);
@@ -206,12 +218,18 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             let (org, dir) = (gather3(&paths.rays.org, &at), gather3(&paths.rays.dir, &at));
             if key == miss {
                 integrator.miss(scene, &path, (org, dir), &mut group);
+                if let Some(beside) = beside {
+                    beside.miss(scene, &path, (org, dir), &mut Beside { out: &mut group, first: *lit });
+                }
                 return;
             }
             let tuv = (gather(&hits.t, &at), gather(&hits.u, &at), gather(&hits.v, &at));
             let primitive = u32x8::from_fn(|i| hits.primitive[at[i] as usize]);
             let vertex = Vertex::new(scene, path, (org, dir), tuv, primitive, MaterialId(key));
             integrator.shade(scene, &vertex, &mut group);
+            if let Some(beside) = beside {
+                beside.shade(scene, &vertex, &mut Beside { out: &mut group, first: *lit });
+            }
         };
         if self.sort {
             sorter.sort(keys);
@@ -234,10 +252,19 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     }
 
     /// Adds each vertex to its pixel: vertices in the order of slots, light in the order of its index.
-    fn add(&mut self) {
-        let Self { paths, out, sums, integrator, scene, .. } = self;
+    fn add(&mut self, depth: u32) {
+        let Self { paths, out, sums, integrator, scene, lit, .. } = self;
         let shadows = integrator.shadow_rays(scene);
         for (c, (sum, added)) in sums.iter_mut().zip(&out.added).enumerate() {
+            if c >= *lit {
+                if depth == 0 {
+                    paths.pixel[..paths.len]
+                        .iter()
+                        .zip(added)
+                        .for_each(|(&pixel, value)| sum[pixel as usize] += value);
+                }
+                continue;
+            }
             for slot in 0..paths.len {
                 let mut value = added[slot];
                 for index in 0..shadows {
@@ -260,9 +287,10 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
 }
 
 impl Outputs<'_> {
-    fn clear(&mut self, slots: usize, shadows: usize) {
+    /// Makes room for this round, in the first `channels` of them.
+    fn clear(&mut self, slots: usize, shadows: usize, channels: usize) {
         self.slots = slots;
-        for channel in &mut self.added {
+        for channel in self.added.iter_mut().take(channels) {
             channel.clear();
             channel.resize(slots, 0.0);
         }

@@ -1,10 +1,11 @@
 //! Things that can be hit.
 
-use std::sync::Arc;
+use std::{fmt, sync::Arc};
 
 use glam::{DAffine3, DVec3, Vec2, Vec3};
 
 use super::{MaterialIndex, Rgb};
+use crate::math::Digest;
 
 /// A surface in the world.
 #[derive(Clone, Debug)]
@@ -81,7 +82,7 @@ pub enum Geometry {
 }
 
 /// Indexed triangles in local space. Every index is in range; every coordinate is finite.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Default, PartialEq)]
 pub struct Mesh {
     /// Vertex positions.
     pub positions: Vec<Vec3>,
@@ -93,4 +94,21 @@ pub struct Mesh {
     pub uvs: Vec<Vec2>,
     /// Corners, counter-clockwise from the side of the normal.
     pub triangles: Vec<[u32; 3]>,
+}
+
+/// Sizes, and a digest of the numbers, of which there may be millions.
+impl fmt::Debug for Mesh {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { positions, normals, uvs, triangles } = self;
+        let vectors = positions.iter().chain(normals).flat_map(Vec3::to_array);
+        let mut digest = Digest::default().floats(vectors).floats(uvs.iter().flat_map(Vec2::to_array));
+        triangles.iter().flatten().for_each(|&index| digest.word(index));
+        f.debug_struct("Mesh")
+            .field("positions", &positions.len())
+            .field("normals", &normals.len())
+            .field("uvs", &uvs.len())
+            .field("triangles", &triangles.len())
+            .field("digest", &digest.value())
+            .finish()
+    }
 }
