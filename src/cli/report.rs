@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     compile::Summary,
-    render::{Backend, Settings, Statistics},
+    render::{Backend, Coverage, Settings, Statistics},
     scene::SceneDescription,
     simd::cpu,
 };
@@ -23,6 +23,9 @@ pub(super) struct Report {
     width: u32,
     height: u32,
     samples_per_pixel: u32,
+    /// The fewest and the most that a pixel has: other numbers where the render was stopped.
+    samples_least: u32,
+    samples_most: u32,
     integrator: String,
     backend: &'static str,
     sorted: bool,
@@ -75,6 +78,7 @@ pub(super) struct Sources<'a> {
     /// What decides the picture besides the scene, as typed.
     pub(super) options: String,
     pub(super) description: &'a SceneDescription,
+    pub(super) coverage: Coverage,
     pub(super) settings: Settings,
     pub(super) summary: Summary,
     pub(super) statistics: Statistics,
@@ -93,6 +97,8 @@ impl From<Sources<'_>> for Report {
             width: description.sensor.film.window().width,
             height: description.sensor.film.window().height,
             samples_per_pixel: description.sensor.sampler.sample_count,
+            samples_least: from.coverage.least,
+            samples_most: from.coverage.most,
             integrator: IntegratorName::from(&description.integrator).to_string(),
             backend: match from.settings.backend {
                 Backend::Packet => "packet",
@@ -128,6 +134,18 @@ impl From<Sources<'_>> for Report {
 }
 
 impl Report {
+    fn samples(&self) -> String {
+        match (self.samples_least, self.samples_most) {
+            (least, most) if least == most => counted(most, "sample"),
+            (least, most) => format!("{} to {}", grouped(least.into()), counted(most, "sample")),
+        }
+    }
+
+    /// As they were asked for.
+    pub(super) fn samples_per_pixel(&self) -> u32 {
+        self.samples_per_pixel
+    }
+
     /// NaN and infinite samples are kept out of the picture, but never silently.
     pub(super) fn warning(&self) -> Option<String> {
         let what = match self.invalid_samples {
@@ -157,7 +175,7 @@ impl fmt::Display for Report {
             "  picture  {} x {}, {} a pixel, {}",
             self.width,
             self.height,
-            counted(self.samples_per_pixel, "sample"),
+            self.samples(),
             self.integrator
         )?;
         writeln!(
@@ -212,6 +230,7 @@ mod tests {
             output: "box.exr".into(),
             options: " --seed 9".into(),
             description: &SceneDescription::default(),
+            coverage: Coverage { least: 4, most: 4, complete: true },
             settings: Settings::default(),
             summary: Summary { triangles: 1234, lights: 1, ..Summary::default() },
             statistics,
