@@ -4,6 +4,7 @@
 
 mod bench;
 mod brdf;
+mod compare;
 mod console;
 mod duration;
 mod envmap;
@@ -47,6 +48,7 @@ Examples:
   packlight render scenes/cornell.xml -o long.exr --spp 4096 --checkpoint long.part.exr
   packlight render scenes/cornell.xml -o part-3.exr --shard 3/16
   packlight merge part-*.exr -o whole.exr
+  packlight compare reference.exr test.exr -o difference.png
   packlight info scenes/cornell.xml --json
   packlight bench gen:terrain:1M --threads 1
   packlight brdf roughconductor:alpha=0.3,material=Au -o lobe.svg
@@ -75,6 +77,8 @@ enum Command {
     Render(Box<render::Arguments>),
     /// Put the parts of a render together
     Merge(merge::Arguments),
+    /// Say how two pictures differ
+    Compare(compare::Arguments),
     /// Show what is in a scene, and the lanes that trace it
     Info(info::Arguments),
     /// Measure how fast rays are traced
@@ -98,6 +102,7 @@ pub fn run() -> ExitCode {
     let done = Cli::try_parse().map_err(failure::Failure::from).and_then(|cli| match cli.command {
         Command::Render(arguments) => render::run(&arguments),
         Command::Merge(arguments) => merge::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Brdf(arguments) => brdf::run(&arguments),
