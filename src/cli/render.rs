@@ -2,6 +2,7 @@
 
 mod aovs;
 mod keep;
+pub(super) mod lesson;
 mod rescue;
 mod share;
 
@@ -34,6 +35,7 @@ use crate::{
     scene::{Film, SceneDescription, Sensor},
 };
 use keep::{KeepOptions, Name};
+use lesson::Lesson;
 use share::ShardOptions;
 
 const PICTURE: &str = "Picture";
@@ -126,6 +128,10 @@ pub(super) struct Arguments {
     /// No progress bar and no summary
     #[arg(short, long)]
     quiet: bool,
+
+    /// Where the time went, and what a ray of each kind meets in the tree
+    #[arg(long, conflicts_with = "quiet")]
+    stats: bool,
 
     /// The summary as one JSON object on stdout
     #[arg(long)]
@@ -226,6 +232,7 @@ fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage),
         settings,
         summary: scene.summary(),
         statistics,
+        lesson: arguments.stats.then(|| Lesson::new(&scene, statistics.stages)),
         load_time,
         threads: rayon::current_num_threads(),
         peak_memory: memory::peak(),

@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::{
     overrides::IntegratorName,
     quantity::{counted, grouped, mebibytes, mega, mega_per_second, time},
+    render::lesson::Lesson,
 };
 use crate::{
     compile::Summary,
@@ -44,6 +45,8 @@ pub(super) struct Report {
     lane_use: LaneUse,
     invalid_samples: u64,
     first_invalid: Option<Sample>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stats: Option<Lesson>,
     #[serde(skip)]
     options: String,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -82,6 +85,7 @@ pub(super) struct Sources<'a> {
     pub(super) settings: Settings,
     pub(super) summary: Summary,
     pub(super) statistics: Statistics,
+    pub(super) lesson: Option<Lesson>,
     pub(super) load_time: Duration,
     pub(super) threads: usize,
     pub(super) peak_memory: Option<u64>,
@@ -127,6 +131,7 @@ impl From<Sources<'_>> for Report {
             },
             invalid_samples: statistics.invalid_samples,
             first_invalid: statistics.first_invalid.map(|(x, y, sample)| Sample { x, y, sample }),
+            stats: from.lesson,
             options: from.options,
             peak_memory_bytes: from.peak_memory,
         }
@@ -212,6 +217,9 @@ impl fmt::Display for Report {
             )?,
             _ => writeln!(f, "  lanes    one ray at a time")?,
         }
+        if let Some(stats) = &self.stats {
+            write!(f, "{stats}")?;
+        }
         if let Some(bytes) = self.peak_memory_bytes {
             writeln!(f, "  memory   {} at the peak", mebibytes(bytes))?;
         }
@@ -234,6 +242,7 @@ mod tests {
             settings: Settings::default(),
             summary: Summary { triangles: 1234, lights: 1, ..Summary::default() },
             statistics,
+            lesson: None,
             load_time: Duration::from_millis(12),
             threads: 2,
             peak_memory: None,

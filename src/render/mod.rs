@@ -30,7 +30,7 @@ pub use frame::{Coverage, Frame, Plan, Watch, tile_count};
 pub use irradiance::Receiver;
 pub use ray_classes::{Query, RayClass, ray_classes};
 pub use shard::{Shard, ShardBy};
-pub use statistics::{LaneUse, Statistics};
+pub use statistics::{LaneUse, Stages, Statistics};
 
 use crate::{bvh::Traversal, compile::Scene, picture::Picture, scene};
 use integrator::Integrator;

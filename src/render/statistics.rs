@@ -39,6 +39,28 @@ impl AddAssign for LaneUse {
     }
 }
 
+/// Time by stage, summed over threads. The reference has no stages.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stages {
+    /// Rays to the next surface.
+    pub trace: Duration,
+    /// Sorting, surfaces, materials and lights.
+    pub shade: Duration,
+    /// Rays to lights.
+    pub connect: Duration,
+    /// Adding what vertices said, and closing the ranks of the paths that go on.
+    pub add: Duration,
+}
+
+impl AddAssign for Stages {
+    fn add_assign(&mut self, other: Self) {
+        self.trace += other.trace;
+        self.shade += other.shade;
+        self.connect += other.connect;
+        self.add += other.add;
+    }
+}
+
 /// Counts of one render.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Statistics {
@@ -58,6 +80,8 @@ pub struct Statistics {
     pub invalid_samples: u64,
     /// Pixel (x, y) and sample of the first of them, in picture order.
     pub first_invalid: Option<(u32, u32, u32)>,
+    /// Where the time of the threads went.
+    pub stages: Stages,
     /// Wall time of rendering, without loading and building.
     pub time: Duration,
 }
@@ -71,6 +95,7 @@ impl Statistics {
         self.shadow_rays += other.shadow_rays;
         self.trace_lanes += other.trace_lanes;
         self.shade_lanes += other.shade_lanes;
+        self.stages += other.stages;
         self.invalid_samples += other.invalid_samples;
         let in_picture_order = |&(x, y, sample): &(u32, u32, u32)| (y, x, sample);
         self.first_invalid =

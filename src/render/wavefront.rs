@@ -4,6 +4,8 @@
 //! eight, trace the shadow rays, add, compact. What a group has to say goes to places that belong to the
 //! slot, so the order in which groups are shaded can't be seen in the picture: sorting changes no bit.
 
+use std::time::Instant;
+
 use bumpalo::{Bump, collections::Vec as BumpVec};
 
 use super::aov::{AovIntegrator, Beside};
@@ -15,7 +17,7 @@ use super::columns::{
 use super::frame::Visit;
 use super::integrator::{Integrator, Outgoing, Path};
 use super::sort::{Sorter, for_each_unsorted_group};
-use super::statistics::Statistics;
+use super::statistics::{Stages, Statistics};
 use super::trace::{self, HitColumns};
 use super::vertex::Vertex;
 use crate::bvh::Tracer;
@@ -36,16 +38,14 @@ pub(super) fn render<I: Integrator>(
     let Some(mut sample) = visit.next() else { return };
     let arena = Bump::new();
     let pixels = camera_rays::morton(tile);
+    let places: Vec<u32> = pixels.iter().map(|&(x, y)| y * tile.width + x).collect();
     let mut wave = Wavefront::new(&arena, scene, integrator, sort);
     loop {
         let mut statistics = Statistics::default();
         wave.start(tile, &pixels, sample);
         wave.run(sample, &mut statistics);
         visit.finish(&statistics, |film| {
-            for (place, &(x, y)) in pixels.iter().enumerate() {
-                let weight = wave.weights[place];
-                film.add((y * tile.width + x) as usize, weight, |c| wave.sums[c][place]);
-            }
+            film.add_all(&places, &wave.weights, wave.sums.iter().map(BumpVec::as_slice));
         });
         match visit.next() {
             Some(next) => sample = next,
@@ -165,16 +165,27 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     fn run(&mut self, sample: u32, statistics: &mut Statistics) {
         let mut depth = 0;
         while self.paths.len > 0 {
+            let start = Instant::now();
+            let mut traced = start;
             if depth == 0 && self.integrator.begins() {
                 self.begin(sample, statistics);
             } else {
                 self.trace(depth, statistics);
+                traced = Instant::now();
                 self.shade(depth, sample, statistics);
             }
+            let shaded = Instant::now();
             self.connect(statistics);
+            let connected = Instant::now();
             self.add(depth);
             self.advance();
             depth += 1;
+            statistics.stages += Stages {
+                trace: traced - start,
+                shade: shaded - traced,
+                connect: connected - shaded,
+                add: connected.elapsed(),
+            };
         }
     }
 

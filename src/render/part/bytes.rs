@@ -270,7 +270,7 @@ impl Reader<'_> {
             shade_lanes: LaneUse { active: c, total: d },
             invalid_samples: invalid,
             first_invalid: some_invalid.then_some((x, y, sample)),
-            time: Duration::ZERO,
+            ..Statistics::default()
         };
         Some(PartTile { number, film, statistics })
     }
