@@ -48,20 +48,3 @@ impl Scene {
         shape
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use std::path::Path;
-
-    use crate::{compile::compile, load};
-
-    #[test]
-    fn a_terrain_is_some_levels_deep_and_costs_some_nodes() {
-        let path = Path::new("gen:terrain:10k");
-        let scene = load::load(path, &load::LoadOptions::default()).unwrap().description;
-        let shape = compile(&scene).unwrap().tree_shape();
-        assert!((3..20).contains(&shape.depth), "{shape:?}");
-        assert!(shape.node_cost > 1.0 && shape.primitive_cost > 0.5, "{shape:?}");
-        assert!(shape.leaves > 1000, "{shape:?}");
-    }
-}
