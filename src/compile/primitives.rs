@@ -322,7 +322,7 @@ impl Leaves for Primitives {
         if (first as usize) < self.triangles.len() * BLOCK { 1 } else { count }
     }
 
-    #[inline]
+    #[inline(always)]
     fn intersect_block<const ANY: bool>(
         &self,
         first: u32,
