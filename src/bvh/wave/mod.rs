@@ -84,7 +84,7 @@ impl Bvh {
         tally: &mut T,
     ) {
         // Occlusion rays take short steps: asking for what is near costs them more than waiting.
-        if ANY && !self.is_far() {
+        if !self.is_far() {
             self.in_turn::<ANY, false, L, S, T>(leaves, stream, runs, wave, tally);
         } else {
             self.in_turn::<ANY, true, L, S, T>(leaves, stream, runs, wave, tally);
