@@ -185,6 +185,14 @@ impl Surfaces {
         Triangle::new(v0, v1, v2)
     }
 
+    /// The vertices of a primitive that is a triangle.
+    pub(super) fn corners(&self, id: u32) -> Option<[Vec3; 3]> {
+        let shape = self.shape(id);
+        let index = (id - shape.first + shape.first_in_class) as usize;
+        matches!(shape.class, Class::Triangles { .. })
+            .then(|| self.triangles[index].map(|i| self.vertices[i as usize].position))
+    }
+
     /// What the kernels need of a primitive.
     pub(super) fn primitive(&self, id: u32) -> Primitive {
         let shape = self.shape(id);
