@@ -38,5 +38,6 @@ pub mod load;
 pub mod render;
 // floor 7
 pub mod lobe;
+pub mod verify;
 // roof
 pub mod cli;

@@ -3,8 +3,6 @@
 
 #![allow(missing_docs)]
 
-#[path = "traversal/aim.rs"]
-mod aim;
 #[path = "traversal/placed.rs"]
 mod placed;
 #[path = "traversal/scenes.rs"]
@@ -16,8 +14,8 @@ use packlight::compile::{Scene, compile};
 use packlight::geometry::{Hit, PrimitiveId, Ray, Ray32, RayLanes, Rayx8};
 use packlight::scene::{Instance, SceneDescription};
 use packlight::simd::{Mask8, Real, Vector3, f32x8};
+use packlight::verify::aim::{Random, rays_at};
 
-use aim::{Random, rays_at};
 use scenes::{shared, targets};
 
 fn bits(hit: Hit) -> (u32, u32, u32, PrimitiveId) {

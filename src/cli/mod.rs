@@ -16,11 +16,13 @@ mod overrides;
 mod progress;
 mod quality;
 mod quantity;
+mod ray_file;
 mod render;
 mod replay;
 mod report;
 mod source;
 mod threads;
+mod verify;
 mod way;
 
 use std::{process::ExitCode, sync::LazyLock};
@@ -39,13 +41,14 @@ Examples:
   packlight render bunny.obj -o normals.exr --integrator aov
   packlight info scenes/cornell.xml --json
   packlight bench gen:terrain:1M --threads 1
+  packlight verify scenes/cornell.xml
   packlight brdf roughconductor:alpha=0.3,material=Au -o lobe.svg
   packlight meter scenes/cornell.xml --at 0,0,0 --normal 0,1,0
   packlight envmap sky.exr --sh -o sky.json
 
 Exit codes:
   0  done
-  1  a file could not be read, understood or written, or a model failed its check
+  1  a file could not be read, understood or written, or a model or scene failed its check
   2  the command line was not understood
   3  this processor lacks instructions that the program was compiled to use";
 
@@ -65,6 +68,8 @@ enum Command {
     Info(info::Arguments),
     /// Measure how fast rays are traced
     Bench(bench::Arguments),
+    /// Prove that all ways of tracing a scene agree, and that nothing leaks
+    Verify(verify::Arguments),
     /// Plot a reflection model, or prove that it is one
     Brdf(Box<brdf::Arguments>),
     /// Measure the irradiance at a point
@@ -81,6 +86,7 @@ pub fn run() -> ExitCode {
         Command::Render(arguments) => render::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
+        Command::Verify(arguments) => verify::run(&arguments),
         Command::Brdf(arguments) => brdf::run(&arguments),
         Command::Meter(arguments) => meter::run(&arguments),
         Command::Envmap(arguments) => envmap::run(&arguments),
