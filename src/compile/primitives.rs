@@ -87,16 +87,15 @@ impl TriangleBlock {
     #[inline]
     fn lanes(&self) -> TriangleLanes<f32x8> {
         let rows = |rows: &[[f32; 8]; 3]| vector3(rows[0].into(), rows[1].into(), rows[2].into());
-        let (v0, v1, v2) = (rows(&self.v0), rows(&self.v1), rows(&self.v2));
-        TriangleLanes { v0, v1, v2, edges: self.edges.into() }
+        TriangleLanes::new([rows(&self.v0), rows(&self.v1), rows(&self.v2)], self.edges.into())
     }
 
     /// A packet against the triangle in a lane.
     #[inline]
     fn intersect<const ANY: bool>(&self, lane: usize, id: &u32, ray: &Rayx8, active: Mask8, hit: &mut Hitx8) {
         let splat = |rows| Vector3::splat(row(rows, lane));
-        let (v0, v1, v2) = (splat(&self.v0), splat(&self.v1), splat(&self.v2));
-        let triangle = TriangleLanes { v0, v1, v2, edges: f32x8::splat(self.edges[lane]) };
+        let vertices = [splat(&self.v0), splat(&self.v1), splat(&self.v2)];
+        let triangle = TriangleLanes::new(vertices, f32x8::splat(self.edges[lane]));
         let (found, t, u, v) = triangle.intersect(&RayLanes { t_far: hit.t, ..*ray }, active);
         if found.any() {
             accept::<ANY>(hit, found, (t, u, v), || u32x8::splat(*id));

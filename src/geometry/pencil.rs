@@ -85,7 +85,7 @@ impl<R: Real> TriangleLanes<R> {
             let v = v.abs();
             v.x + v.y + v.z
         };
-        let (e1, e2) = (self.v1 - self.v0, self.v2 - self.v0);
+        let (e1, e2) = (self.e1, self.e2);
         let a = self.v0 - Vector3::splat(org);
         let (u, v) = (a.cross(e2), e1.cross(a));
         let w = e2.cross(e1) - u - v;
@@ -131,12 +131,8 @@ mod tests {
                     hit[lane] |= triangle.intersect(&ray).is_some();
                 }
             }
-            let lanes = TriangleLanes {
-                v0: Vec3x8::splat(triangle.v0),
-                v1: Vec3x8::splat(triangle.v1),
-                v2: Vec3x8::splat(triangle.v2),
-                edges: f32x8::splat(triangle.edges()),
-            };
+            let vertices = [triangle.v0, triangle.v1, triangle.v2].map(Vec3x8::splat);
+            let lanes = TriangleLanes::new(vertices, f32x8::splat(triangle.edges()));
             let pencils = Pencils::new(org, Vec3x8::from_fn(|i| low[i]), Vec3x8::from_fn(|i| high[i]));
             let meet = pencils.meet(&lanes.edge_planes(org), 5).to_bitmask();
             for (lane, hit) in hit.into_iter().enumerate() {

@@ -14,16 +14,20 @@
 //! Numerators are rounded by less than a margin that grows with the edges and the distance. Beyond it their
 //! signs are certain. Within it two neighbours might both say that the ray is on the other's side of their
 //! edge; there, and for hardly any ray, [`crossing`] decides, which can't.
+//!
+//! In lanes, a bound on the margins of all triangles of the scene, known for a ray before it meets any, sorts
+//! out those that are far beside the ray with a multiplication and a comparison.
 
 use glam::Vec3;
 
 use super::{Aabb, Ray, RayLanes, aabb, crossing::crossing};
-use crate::simd::{Mask, Real, Vector3};
+use crate::simd::{Mask, Real, Vector3, vector3};
 
-/// Bound on the rounding of a numerator, in units of |dir|·e·(|s| + e) with e = |e₁| + |e₂| and sums of
-/// absolute components as lengths. Differences, two products and a sum in each of p and q, and three more
-/// roundings on top: at most 8 ulps for u and v; w has the sum of three.
-const ULPS: f32 = 16.0 * f32::EPSILON;
+/// Bound on the rounding of a numerator, in units of all its products: with a = |s| + |e₁| + |e₂| and
+/// e = |e₁| + |e₂|, by components, the sum of aᵢ·|dir|ⱼ·eₖ over the permutations of the axes. A product takes
+/// part in at most 7 roundings, two of them of the differences that s and an edge are; w adds two more. These
+/// are 12, for the margin is rounded itself.
+const ULPS: f32 = 6.0 * f32::EPSILON;
 /// Against products that underflow.
 const LEAST: f32 = 1e-34;
 
@@ -84,8 +88,10 @@ impl Triangle {
         let least = Real::min(Real::min(u, v), w);
         let greatest = Real::max(Real::max(u, v), w);
         let inside = Real::max(least, -greatest);
-        let edges = self.edges();
-        let margin = size(ray.dir) * edges * (size(s) + edges) * ULPS + LEAST;
+        let (d, e) = (ray.dir.abs(), e1.abs() + e2.abs());
+        let a = s.abs() + e;
+        let products = Vec3::new(a.y * d.z + a.z * d.y, a.z * d.x + a.x * d.z, a.x * d.y + a.y * d.x);
+        let margin = products.dot(e) * ULPS + LEAST;
         let (t, u, v) = if inside > margin {
             let inverse = 1.0 / det;
             (e2.dot(q) * inverse, u * inverse, v * inverse)
@@ -107,6 +113,20 @@ fn size(v: Vec3) -> f32 {
     v.x + v.y + v.z
 }
 
+/// A bound on the margin of any triangle whose coordinates are at most `reach` in magnitude, for each unit of
+/// its [`edges`](Triangle::edges): no vertex is farther from the origin of the ray than org + reach, no edge
+/// longer than 2·reach. A fifth more, against the rounding of the margins themselves.
+#[inline]
+pub(super) fn margin_within<R: Real>(org: Vector3<R>, dir: Vector3<R>, reach: Vec3) -> R {
+    products(org.abs() + Vector3::splat(reach * 5.0), dir.abs()).max_element() * R::splat(1.2 * ULPS)
+}
+
+/// aⱼ·bₖ + aₖ·bⱼ for each axis i and the two others.
+#[inline]
+fn products<R: Real>(a: Vector3<R>, b: Vector3<R>) -> Vector3<R> {
+    vector3(a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x)
+}
+
 /// Triangles in lanes: eight of a block, or one in all of them.
 #[derive(Clone, Copy, Debug)]
 pub struct TriangleLanes<R> {
@@ -116,33 +136,43 @@ pub struct TriangleLanes<R> {
     pub v1: Vector3<R>,
     /// Third vertices.
     pub v2: Vector3<R>,
+    /// v₁ − v₀.
+    pub e1: Vector3<R>,
+    /// v₂ − v₀.
+    pub e2: Vector3<R>,
     /// [`Triangle::edges`].
     pub edges: R,
 }
 
 impl<R: Real> TriangleLanes<R> {
+    /// From vertices and [`Triangle::edges`].
+    #[inline]
+    pub fn new([v0, v1, v2]: [Vector3<R>; 3], edges: R) -> Self {
+        Self { v0, v1, v2, e1: v1 - v0, e2: v2 - v0, edges }
+    }
+
     /// Eight rays, eight triangles, or eight of each: (hit, t, u, v) of the lanes in `active`.
     // Always: as a call, rays and triangles would go through memory.
     #[inline(always)]
     pub fn intersect(&self, ray: &RayLanes<R>, active: R::Mask) -> (R::Mask, R, R, R) {
-        let (e1, e2) = (self.v1 - self.v0, self.v2 - self.v0);
-        let p = ray.dir.cross(e2);
-        let det = e1.dot(p);
+        let p = ray.dir.cross(self.e2);
+        let det = self.e1.dot(p);
         let s = ray.org - self.v0;
         let u = s.dot(p);
-        let q = s.cross(e1);
+        let q = s.cross(self.e1);
         let v = ray.dir.dot(q);
         let w = det - u - v;
         let inside = u.min(v).min(w).max(-u.max(v).max(w));
-        let margin = size_lanes(ray.dir) * self.edges * (size_lanes(s) + self.edges) * R::splat(ULPS)
-            + R::splat(LEAST);
-        let possible = (-margin).le(inside) & active;
-        if possible.none() {
-            return (possible, u, u, v);
+        let near = R::splat(-LEAST).le(self.edges * ray.margin + inside) & active;
+        if near.none() {
+            return (near, u, u, v);
         }
+        let e = self.e1.abs() + self.e2.abs();
+        let margin = products(s.abs() + e, ray.dir.abs()).dot(e) * R::splat(ULPS) + R::splat(LEAST);
+        let possible = (-margin).le(inside) & near;
         let certain = margin.lt(inside);
         let inverse = R::one() / det;
-        let mut found = (possible & certain, e2.dot(q) * inverse, u * inverse, v * inverse);
+        let mut found = (possible & certain, self.e2.dot(q) * inverse, u * inverse, v * inverse);
         let doubtful = possible & !certain;
         if doubtful.any() {
             // Copies, so that the originals need not be in memory for this.
@@ -166,28 +196,20 @@ impl<R: Real> TriangleLanes<R> {
         lanes: R::Mask,
         (hit, t, u, v): (R::Mask, R, R, R),
     ) -> (R::Mask, R, R, R) {
-        let (mut bits, lanes) = (hit.to_bitmask(), lanes.to_bitmask());
-        let mut rows = [[0.0; 8]; 3];
-        for lane in 0..R::LANES {
-            let mut answer = Some((t.lane(lane), u.lane(lane), v.lane(lane)));
-            if lanes >> lane & 1 != 0 {
-                let vertices = [self.v0.lane(lane), self.v1.lane(lane), self.v2.lane(lane)];
-                answer = crossing(ray.org.lane(lane), ray.dir.lane(lane), vertices);
-                bits |= u32::from(answer.is_some()) << lane;
+        let (mut bits, mut left) = (hit.to_bitmask(), lanes.to_bitmask());
+        let mut rows = [t, u, v].map(|row| [0, 1, 2, 3, 4, 5, 6, 7].map(|i| row.lane(i % R::LANES)));
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize % 8;
+            left &= left - 1;
+            let vertices = [self.v0.lane(lane), self.v1.lane(lane), self.v2.lane(lane)];
+            if let Some((t, u, v)) = crossing(ray.org.lane(lane), ray.dir.lane(lane), vertices) {
+                bits |= 1 << lane;
+                [rows[0][lane], rows[1][lane], rows[2][lane]] = [t, u, v];
             }
-            let (t, u, v) = answer.unwrap_or_default();
-            [rows[0][lane], rows[1][lane], rows[2][lane]] = [t, u, v];
         }
         let [t, u, v] = rows.map(|row| R::from_fn(|lane| row[lane]));
         (R::Mask::from_bitmask(bits), t, u, v)
     }
-}
-
-/// |x| + |y| + |z|.
-#[inline]
-fn size_lanes<R: Real>(v: Vector3<R>) -> R {
-    let v = v.abs();
-    v.x + v.y + v.z
 }
 
 #[cfg(test)]

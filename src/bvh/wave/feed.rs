@@ -19,7 +19,7 @@ const STEEPEST: f32 = 1e18;
 /// ```text
 /// inv x y z     low shift x y z    t_near  t_far
 /// high shift x y z    org x y z    t_near  index
-/// dir x y z     rdir x y z         –       –
+/// dir x y z     rdir x y z         margin  –
 /// ```
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
@@ -72,12 +72,13 @@ impl Ready {
             rdir: splat(third, 3),
             t_near: f32x8::splat(second[6]),
             t_far: f32x8::splat(first[7]),
+            margin: f32x8::splat(third[6]),
         }
     }
 
     /// The rays of a packet that starts at a place in its stream.
     fn packet(rays: &Rayx8, first: usize, reach: glam::Vec3, ready: &mut [Self; LANES]) {
-        let RayLanes { org, dir, rdir, t_near, t_far } = rays;
+        let RayLanes { org, dir, rdir, t_near, t_far, margin: doubt } = rays;
         let inv = rdir.map(|r| r.max(f32x8::splat(-STEEPEST)).min(f32x8::splat(STEEPEST)));
         let reach = Vec3x8::splat(reach);
         let margin =
@@ -92,7 +93,7 @@ impl Ready {
         let rows = [
             transpose([inv.x, inv.y, inv.z, x.0, y.0, z.0, t_near.max(f32x8::zero()), *t_far]),
             transpose([x.1, y.1, z.1, org.x, org.y, org.z, *t_near, f32x8::from_bits(index)]),
-            transpose([dir.x, dir.y, dir.z, rdir.x, rdir.y, rdir.z, *t_near, *t_far]),
+            transpose([dir.x, dir.y, dir.z, rdir.x, rdir.y, rdir.z, *doubt, *doubt]),
         ];
         for (i, ready) in ready.iter_mut().enumerate() {
             *ready = Self([rows[0][i].to_array(), rows[1][i].to_array(), rows[2][i].to_array()]);
@@ -143,7 +144,7 @@ impl Feed {
         tally: &mut T,
     ) -> bool {
         while self.waiting == 0 {
-            if runs.peek::<ANY, L, S, T>(leaves, stream, tally) != Some(Way::Wave) {
+            if runs.peek::<ANY, L, S, T>(bvh, leaves, stream, tally) != Some(Way::Wave) {
                 return false;
             }
             self.refill::<ANY, S>(bvh, stream, runs);
