@@ -141,7 +141,7 @@ impl Shapes {
         let mut emitting = Vec::new();
         for index in first..self.surfaces.triangles.len() {
             let triangle = self.surfaces.triangle(index);
-            if triangle.e1.cross(triangle.e2) == Vec3::ZERO {
+            if triangle.e1().cross(triangle.e2()) == Vec3::ZERO {
                 // Its determinant would be noise: a hit where there is nothing.
                 self.number();
                 self.degenerate += 1;
@@ -173,7 +173,7 @@ fn emitter_extent(emitting: &Emitting) -> Vec3 {
     match emitting {
         Emitting::Sphere(sphere) => Vec3::splat(sphere.radius),
         Emitting::Triangles { triangles, .. } => {
-            triangles.iter().fold(Vec3::ZERO, |extent, t| extent.max(t.e1.abs() + t.e2.abs()))
+            triangles.iter().fold(Vec3::ZERO, |extent, t| extent.max(t.e1().abs() + t.e2().abs()))
         }
         Emitting::Canonical { axes, .. } => axes.iter().fold(Vec3::ZERO, |sum, axis| sum + axis.abs()),
     }

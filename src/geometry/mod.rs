@@ -11,6 +11,7 @@
 pub mod aabb;
 mod affine;
 mod canonical;
+mod crossing;
 mod offset;
 mod pencil;
 mod placement;

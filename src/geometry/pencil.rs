@@ -85,10 +85,11 @@ impl<R: Real> TriangleLanes<R> {
             let v = v.abs();
             v.x + v.y + v.z
         };
+        let (e1, e2) = (self.v1 - self.v0, self.v2 - self.v0);
         let a = self.v0 - Vector3::splat(org);
-        let (u, v) = (a.cross(self.e2), self.e1.cross(a));
-        let w = self.e2.cross(self.e1) - u - v;
-        let (e1, e2) = (size(self.e1), size(self.e2));
+        let (u, v) = (a.cross(e2), e1.cross(a));
+        let w = e2.cross(e1) - u - v;
+        let (e1, e2) = (size(e1), size(e2));
         let margin = R::splat(ULPS) * (size(a) * (e1 + e2) + e1 * e2) + R::splat(LEAST);
         EdgePlanes { u, v, w, margin }
     }
@@ -119,7 +120,7 @@ mod tests {
                 // Around a corner, a point of an edge, the inside or the outside.
                 let (u, v) = [(0.0, 0.0), (0.5, 0.5), (0.3, 0.3), (0.7, 0.0), (-0.4, 0.2), (0.9, 0.8)]
                     [random.below(6) as usize];
-                let target = v0 + triangle.e1 * u + triangle.e2 * v - org;
+                let target = v0 + triangle.e1() * u + triangle.e2() * v - org;
                 for _ in 0..8 {
                     let dir = target + random.vector() * (spread * scale);
                     if dir == Vec3::ZERO {
@@ -132,8 +133,9 @@ mod tests {
             }
             let lanes = TriangleLanes {
                 v0: Vec3x8::splat(triangle.v0),
-                e1: Vec3x8::splat(triangle.e1),
-                e2: Vec3x8::splat(triangle.e2),
+                v1: Vec3x8::splat(triangle.v1),
+                v2: Vec3x8::splat(triangle.v2),
+                edges: f32x8::splat(triangle.edges()),
             };
             let pencils = Pencils::new(org, Vec3x8::from_fn(|i| low[i]), Vec3x8::from_fn(|i| high[i]));
             let meet = pencils.meet(&lanes.edge_planes(org), 5).to_bitmask();

@@ -64,7 +64,7 @@ impl Emitting {
     /// Triangles, degenerate ones included: they are never drawn.
     pub fn triangles(triangles: Vec<Triangle>) -> Self {
         let mut sum = 0.0;
-        let area = |t: &Triangle| 0.5 * t.e1.cross(t.e2).length();
+        let area = |t: &Triangle| 0.5 * t.e1().cross(t.e2()).length();
         let sums = triangles
             .iter()
             .map(|t| {
@@ -121,8 +121,8 @@ impl Emitting {
                 }
                 let (b, c) = warp::triangle(R::from_fn(|lane| picked[lane].1), v);
                 let v0 = Vector3::from_fn(|lane| triangles[picked[lane].0].v0);
-                let e1 = Vector3::from_fn(|lane| triangles[picked[lane].0].e1);
-                let e2 = Vector3::from_fn(|lane| triangles[picked[lane].0].e2);
+                let e1 = Vector3::from_fn(|lane| triangles[picked[lane].0].e1());
+                let e2 = Vector3::from_fn(|lane| triangles[picked[lane].0].e2());
                 (
                     v0 + e1.scale(b) + e2.scale(c),
                     e1.cross(e2).normalize_or(vector3(R::zero(), R::zero(), R::one())),

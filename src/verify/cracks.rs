@@ -20,8 +20,9 @@ const CHUNK: u64 = 16_384;
 /// Least height of a triangle over the plane through an edge and the ray's origin, in lengths of its side;
 /// and least sine of the angle between a ray and a triangle.
 const CLEAR: f64 = 0.02;
-/// Bound on what rounding moves a target by, in ulps of the coordinates and the distance.
-const ROUNDING: f64 = 16.0 * f32::EPSILON as f64;
+/// Bound on what rounding a direction moves the ray by at its target, in units of the distance; and on what
+/// rounding a point of an edge moves that off the edge, in units of its coordinates.
+const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
 
 /// What was found.
 #[derive(Clone, Debug, Default)]
@@ -118,7 +119,8 @@ impl Seams {
         };
         let dir = target - org;
         let [from, to, way] = [org, target, dir].map(Vec3::as_dvec3);
-        let blur = ROUNDING * (from.abs().max_element() + to.abs().max_element() + way.length());
+        let off = if at_vertex { 0.0 } else { to.abs().max_element() };
+        let blur = ROUNDING * (off + way.length());
         let sine = profile(from, to, ring, blur)?;
         // A ray of unit length is another ray: its target is off by the rounding of its direction.
         let (dir, end) = if random.unit() < 0.5 { (dir, 1.0) } else { (dir.normalize(), dir.length()) };
@@ -143,7 +145,7 @@ fn profile(org: DVec3, target: DVec3, ring: &[Vec3], blur: f64) -> Option<f64> {
         let area = way.dot(n);
         let flat = p.length().min(q.length());
         let clear = CLEAR * p.length() * q.length();
-        if flat < 64.0 * blur || area.abs() < clear || area * side < 0.0 {
+        if flat < 16.0 * blur || area.abs() < clear || area * side < 0.0 {
             return None;
         }
         side = area;
