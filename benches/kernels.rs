@@ -40,7 +40,7 @@ fn triangle(c: &mut Criterion) {
             let hits = triangles.iter().map(|t| {
                 let splat = Vector3::splat;
                 let (v0, v1, v2) = (splat(t.v0), splat(t.v1), splat(t.v2));
-                let lanes = TriangleLanes::new([v0, v1, v2], f32x8::splat(t.edges()));
+                let lanes = TriangleLanes { v0, v1, v2, edges: f32x8::splat(t.edges()) };
                 lanes.intersect(&packet, all).0.count()
             });
             hits.sum::<u32>()

@@ -191,7 +191,8 @@ fn ball(scale: f32, by: Vec3) -> Scene {
         radiance: None,
     };
     let materials = vec![Material::default()];
-    compile(&SceneDescription { shapes: vec![shape], materials, ..Default::default() }).unwrap()
+    compile(&SceneDescription { shapes: vec![shape], materials, ..Default::default() })
+        .expect("a ball compiles")
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Rays through one point against the edges of a triangle: a test that only culls.
 //!
-//! The planes through an origin and the three edges of a triangle have the normals U = a × e₂, V = e₁ × a
-//! and W = e₂ × e₁ − U − V, with a = v₀ − org. A ray from that origin has the barycentric coordinates
+//! The planes through an origin and the three edges of a triangle have the normals U = e₂ × s, V = s × e₁
+//! and W = e₂ × e₁ − U − V, with s = org − v₀. A ray from that origin has the barycentric coordinates
 //! u : v : w = dir·U : dir·V : dir·W \[MT97\], so one that hits the triangle has no two of these products
 //! with different signs. If over a whole box of directions one of them is positive and another negative,
 //! none of its rays hits.
@@ -11,10 +11,10 @@
 
 use glam::Vec3;
 
-use super::TriangleLanes;
+use super::Aspect;
 use crate::simd::{Mask8, Real, Vec3x8, Vector3, f32x8};
 
-/// Roundings, in ulps of |dir|·(|a|·(|e₁| + |e₂|) + |e₁|·|e₂|): the kernel's products take part with at
+/// Roundings, in ulps of |dir|·(|s|·(|e₁| + |e₂|) + |e₁|·|e₂|): the kernel's products take part with at
 /// most 10 each, these with as many, and the middle and the radius of the directions with 4.
 const ULPS: f32 = 48.0 * f32::EPSILON;
 /// Against products that underflow.
@@ -77,27 +77,26 @@ pub struct EdgePlanes<R> {
     margin: R,
 }
 
-impl<R: Real> TriangleLanes<R> {
-    /// The planes through the edges and an origin.
+impl<R: Real> Aspect<R> {
+    /// The planes through the edges and the origin.
     #[inline]
-    pub fn edge_planes(&self, org: Vec3) -> EdgePlanes<R> {
+    pub fn edge_planes(&self) -> EdgePlanes<R> {
         let size = |v: Vector3<R>| {
             let v = v.abs();
             v.x + v.y + v.z
         };
         let (e1, e2) = (self.e1, self.e2);
-        let a = self.v0 - Vector3::splat(org);
-        let (u, v) = (a.cross(e2), e1.cross(a));
+        let (u, v) = (e2.cross(self.s), self.q);
         let w = e2.cross(e1) - u - v;
         let (e1, e2) = (size(e1), size(e2));
-        let margin = R::splat(ULPS) * (size(a) * (e1 + e2) + e1 * e2) + R::splat(LEAST);
+        let margin = R::splat(ULPS) * (size(self.s) * (e1 + e2) + e1 * e2) + R::splat(LEAST);
         EdgePlanes { u, v, w, margin }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Ray, Triangle, seeds::Random};
+    use super::super::{Ray, Triangle, TriangleLanes, seeds::Random};
     use super::*;
     use crate::simd::Mask;
 
@@ -131,10 +130,10 @@ mod tests {
                     hit[lane] |= triangle.intersect(&ray).is_some();
                 }
             }
-            let vertices = [triangle.v0, triangle.v1, triangle.v2].map(Vec3x8::splat);
-            let lanes = TriangleLanes::new(vertices, f32x8::splat(triangle.edges()));
+            let [v0, v1, v2] = [triangle.v0, triangle.v1, triangle.v2].map(Vec3x8::splat);
+            let lanes = TriangleLanes { v0, v1, v2, edges: f32x8::splat(triangle.edges()) };
             let pencils = Pencils::new(org, Vec3x8::from_fn(|i| low[i]), Vec3x8::from_fn(|i| high[i]));
-            let meet = pencils.meet(&lanes.edge_planes(org), 5).to_bitmask();
+            let meet = pencils.meet(&lanes.aspect(Vec3x8::splat(org)).edge_planes(), 5).to_bitmask();
             for (lane, hit) in hit.into_iter().enumerate() {
                 hits += u32::from(hit);
                 culled += 1 - (meet >> lane & 1);

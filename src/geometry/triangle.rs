@@ -90,11 +90,11 @@ impl Triangle {
         let inside = Real::max(least, -greatest);
         let (d, e) = (ray.dir.abs(), e1.abs() + e2.abs());
         let a = s.abs() + e;
-        let products = Vec3::new(a.y * d.z + a.z * d.y, a.z * d.x + a.x * d.z, a.x * d.y + a.y * d.x);
-        let margin = products.dot(e) * ULPS + LEAST;
+        let products = Vec3::new(a.y * e.z + a.z * e.y, a.z * e.x + a.x * e.z, a.x * e.y + a.y * e.x);
+        let margin = d.dot(products * ULPS) + LEAST;
         let (t, u, v) = if inside > margin {
             let inverse = 1.0 / det;
-            (e2.dot(q) * inverse, u * inverse, v * inverse)
+            (e2.dot(q) * inverse + 0.0, u * inverse, v * inverse)
         } else if inside >= -margin {
             crossing(ray.org, ray.dir, [self.v0, self.v1, self.v2])?
         } else {
@@ -136,30 +136,69 @@ pub struct TriangleLanes<R> {
     pub v1: Vector3<R>,
     /// Third vertices.
     pub v2: Vector3<R>,
-    /// v₁ − v₀.
-    pub e1: Vector3<R>,
-    /// v₂ − v₀.
-    pub e2: Vector3<R>,
     /// [`Triangle::edges`].
     pub edges: R,
 }
 
+/// Triangles as they are seen from where rays start: what of the test does not depend on a direction.
+#[derive(Clone, Copy, Debug)]
+pub struct Aspect<R> {
+    /// e₁.
+    pub e1: Vector3<R>,
+    /// e₂.
+    pub e2: Vector3<R>,
+    /// org − v₀.
+    pub s: Vector3<R>,
+    /// s × e₁.
+    pub q: Vector3<R>,
+    /// What a direction's magnitudes are multiplied with to bound the rounding of a numerator.
+    pub doubt: Vector3<R>,
+}
+
+impl<R: Real> Aspect<R> {
+    /// One of the lanes, in all lanes.
+    #[inline(always)]
+    pub fn splat(&self, lane: usize) -> Self {
+        let one = |v: &Vector3<R>| v.map(|x| R::splat(x.lane(lane)));
+        Self {
+            e1: one(&self.e1),
+            e2: one(&self.e2),
+            s: one(&self.s),
+            q: one(&self.q),
+            doubt: one(&self.doubt),
+        }
+    }
+}
+
 impl<R: Real> TriangleLanes<R> {
-    /// From vertices and [`Triangle::edges`].
-    #[inline]
-    pub fn new([v0, v1, v2]: [Vector3<R>; 3], edges: R) -> Self {
-        Self { v0, v1, v2, e1: v1 - v0, e2: v2 - v0, edges }
+    /// As seen from an origin.
+    #[inline(always)]
+    pub fn aspect(&self, org: Vector3<R>) -> Aspect<R> {
+        let (e1, e2) = (self.v1 - self.v0, self.v2 - self.v0);
+        let (s, e) = (org - self.v0, e1.abs() + e2.abs());
+        let doubt = products(s.abs() + e, e).scale(R::splat(ULPS));
+        Aspect { e1, e2, s, q: s.cross(e1), doubt }
     }
 
     /// Eight rays, eight triangles, or eight of each: (hit, t, u, v) of the lanes in `active`.
     // Always: as a call, rays and triangles would go through memory.
     #[inline(always)]
     pub fn intersect(&self, ray: &RayLanes<R>, active: R::Mask) -> (R::Mask, R, R, R) {
-        let p = ray.dir.cross(self.e2);
-        let det = self.e1.dot(p);
-        let s = ray.org - self.v0;
+        self.intersect_seen(&self.aspect(ray.org), ray, active)
+    }
+
+    /// [`intersect`](Self::intersect), for rays whose origin the triangles have been seen from.
+    #[inline(always)]
+    pub fn intersect_seen(
+        &self,
+        aspect: &Aspect<R>,
+        ray: &RayLanes<R>,
+        active: R::Mask,
+    ) -> (R::Mask, R, R, R) {
+        let Aspect { e1, e2, s, q, doubt } = *aspect;
+        let p = ray.dir.cross(e2);
+        let det = e1.dot(p);
         let u = s.dot(p);
-        let q = s.cross(self.e1);
         let v = ray.dir.dot(q);
         let w = det - u - v;
         let inside = u.min(v).min(w).max(-u.max(v).max(w));
@@ -167,12 +206,13 @@ impl<R: Real> TriangleLanes<R> {
         if near.none() {
             return (near, u, u, v);
         }
-        let e = self.e1.abs() + self.e2.abs();
-        let margin = products(s.abs() + e, ray.dir.abs()).dot(e) * R::splat(ULPS) + R::splat(LEAST);
+        let margin = ray.dir.abs().dot(doubt) + R::splat(LEAST);
         let possible = (-margin).le(inside) & near;
         let certain = margin.lt(inside);
         let inverse = R::one() / det;
-        let mut found = (possible & certain, self.e2.dot(q) * inverse, u * inverse, v * inverse);
+        // A zero added: rays from +0 and from −0 see the same aspect, and have the same t.
+        let t = e2.dot(q) * inverse + R::zero();
+        let mut found = (possible & certain, t, u * inverse, v * inverse);
         let doubtful = possible & !certain;
         if doubtful.any() {
             // Copies, so that the originals need not be in memory for this.

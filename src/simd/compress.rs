@@ -81,8 +81,8 @@ pub(super) mod portable {
 #[allow(unsafe_code)]
 mod avx512 {
     use std::arch::x86_64::{
-        __m256, __m256i, _CMP_LE_OQ, _mm256_cmp_ps_mask, _mm256_cmpneq_epu32_mask, _mm256_loadu_ps, _mm256_mask_cmp_ps_mask, _mm256_loadu_si256,
-        _mm256_maskz_compress_epi32, _mm256_storeu_si256,
+        __m256, __m256i, _CMP_LE_OQ, _mm256_cmp_ps_mask, _mm256_cmpneq_epu32_mask, _mm256_loadu_ps,
+        _mm256_loadu_si256, _mm256_mask_cmp_ps_mask, _mm256_maskz_compress_epi32, _mm256_storeu_si256,
     };
 
     use super::{f32x8, u32x8};

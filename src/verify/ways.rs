@@ -217,7 +217,7 @@ mod tests {
             compare(&scene, &self::rays(), 300 * 500, &answers);
         assert_eq!((mismatches, exhibit), (0, None));
         assert!(
-            rays > 3000 && hits > 500 && (400..600).contains(&brute_force),
+            rays > 3800 && hits > 500 && (400..600).contains(&brute_force),
             "{rays} {hits} {brute_force}"
         );
     }

@@ -81,8 +81,7 @@ impl Ready {
         let RayLanes { org, dir, rdir, t_near, t_far, margin: doubt } = rays;
         let inv = rdir.map(|r| r.max(f32x8::splat(-STEEPEST)).min(f32x8::splat(STEEPEST)));
         let reach = Vec3x8::splat(reach);
-        let margin =
-            |inv: f32x8, org: f32x8, reach: f32x8| f32x8::splat(MARGIN) * inv * (org.abs() + reach);
+        let margin = |inv: f32x8, org: f32x8, reach: f32x8| f32x8::splat(MARGIN) * inv * (org.abs() + reach);
         let axis = |inv: f32x8, org: f32x8, reach: f32x8| {
             let (shift, margin) = (-(org * inv), margin(inv, org, reach));
             (shift - margin, shift + margin)

@@ -111,7 +111,7 @@ impl Surfaces {
         }
         let row = |of: fn(&Triangle) -> glam::Vec3| Vector3::from_fn(|i| of(&triangles[i]));
         let edges = R::from_fn(|i| triangles[i].edges());
-        let lanes = TriangleLanes::new([row(|t| t.v0), row(|t| t.v1), row(|t| t.v2)], edges);
+        let lanes = TriangleLanes { v0: row(|t| t.v0), v1: row(|t| t.v1), v2: row(|t| t.v2), edges };
         let ray = RayLanes::new(org, dir, R::splat(f32::NEG_INFINITY), R::splat(f32::INFINITY));
         let there = R::Mask::from_bitmask(there);
         let (_, _, u, v) = lanes.intersect(&ray, there);

@@ -18,8 +18,12 @@ impl Kernel for Triangle {
 
     fn lanes(surfaces: &[Self; 8], rays: &Rayx8, active: Mask8) -> Option<(Mask8, [f32x8; 3])> {
         let row = |of: fn(&Self) -> Vec3| Vector3::from_fn(|i| of(&surfaces[i]));
-        let vertices = [row(|triangle| triangle.v0), row(|triangle| triangle.v1), row(|triangle| triangle.v2)];
-        let triangles = TriangleLanes::new(vertices, f32x8::from_fn(|i| surfaces[i].edges()));
+        let triangles = TriangleLanes {
+            v0: row(|triangle| triangle.v0),
+            v1: row(|triangle| triangle.v1),
+            v2: row(|triangle| triangle.v2),
+            edges: f32x8::from_fn(|i| surfaces[i].edges()),
+        };
         let (hit, t, u, v) = triangles.intersect(rays, active);
         // What sorts out the triangles far beside a ray sorts out nothing else.
         let points = surfaces.iter().flat_map(|s| [s.v0, s.v1, s.v2]);
