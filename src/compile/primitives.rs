@@ -9,7 +9,7 @@ use self::triangle_block::{TriangleBlock, row, set};
 use super::instances::Instances;
 use crate::bvh::{BLOCK, Hitx8, Leaves};
 use crate::geometry::{
-    Canonical, Hit, Pencils, PrimitiveId, Ray, RayLanes, Rayx8, Sphere, SphereLanes, Triangle,
+    AspectColumns, Canonical, Hit, Pencils, PrimitiveId, Ray, RayLanes, Rayx8, Sphere, SphereLanes, Triangle,
 };
 use crate::simd::{Bits, Mask, Mask8, Real, Vector3, f32x8, u32x8};
 
@@ -258,17 +258,22 @@ impl Leaves for Primitives {
         };
         // From the one origin of all, for all triangles of the block at once.
         let aspects = block.lanes().aspect(Vector3::splat(pencils.org()));
-        let planes = aspects.edge_planes();
+        let (planes, aspects) = (aspects.edge_planes(), AspectColumns::new(&aspects));
         let (lane, mut tests) = (first as usize % BLOCK, 0);
         for lane in lane..lane + count as usize {
             let id = &self.triangle_ids[first as usize / BLOCK * BLOCK + lane];
             let mut left = mask & pencils.meet(&planes, lane).to_bitmask();
             tests += left.count_ones();
-            let aspect = aspects.splat(lane);
             while left != 0 {
                 let packet = left.trailing_zeros() as usize % 8;
                 left &= left - 1;
-                block.intersect::<ANY>((lane, id), &aspect, &packets[packet], every, &mut hits[packet]);
+                block.intersect::<ANY>(
+                    (lane, id),
+                    &aspects.splat(lane),
+                    &packets[packet],
+                    every,
+                    &mut hits[packet],
+                );
             }
         }
         tests

@@ -12,7 +12,7 @@
 use glam::Vec3;
 
 use super::Aspect;
-use crate::simd::{Mask8, Real, Vec3x8, Vector3, f32x8};
+use crate::simd::{LANES, Mask8, Real, Vec3x8, f32x8};
 
 /// Roundings, in ulps of |dir|·(|s|·(|e₁| + |e₂|) + |e₁|·|e₂|): the kernel's products take part with at
 /// most 10 each, these with as many, and the middle and the radius of the directions with 4.
@@ -52,10 +52,10 @@ impl Pencils {
 
     /// Which pencils may hold a ray that hits the triangle in a lane of the planes.
     #[inline]
-    pub fn meet(&self, planes: &EdgePlanes<f32x8>, lane: usize) -> Mask8 {
-        let margin = f32x8::splat(planes.margin.lane(lane)).fused(self.length, f32x8::splat(LEAST));
-        let along = |plane: &Vec3x8| {
-            let [x, y, z] = [plane.x, plane.y, plane.z].map(|component| f32x8::splat(component.lane(lane)));
+    pub fn meet(&self, planes: &EdgePlanes, lane: usize) -> Mask8 {
+        let margin = f32x8::splat(planes.margin[lane]).fused(self.length, f32x8::splat(LEAST));
+        let along = |plane: &[[f32; LANES]; 3]| {
+            let [x, y, z] = [0, 1, 2].map(|axis| f32x8::splat(plane[axis][lane]));
             let middle = self.middle.z.fused(z, self.middle.y.fused(y, self.middle.x * x));
             let radius = self.radius.z.fused(z.abs(), self.radius.y.fused(y.abs(), self.radius.x * x.abs()));
             (middle - radius, middle + radius)
@@ -67,21 +67,21 @@ impl Pencils {
     }
 }
 
-/// The planes through an origin and the edges of triangles in lanes.
+/// The planes through an origin and the edges of eight triangles, in columns: a lane is read from memory.
 #[derive(Clone, Copy, Debug)]
-pub struct EdgePlanes<R> {
-    u: Vector3<R>,
-    v: Vector3<R>,
-    w: Vector3<R>,
+pub struct EdgePlanes {
+    u: [[f32; LANES]; 3],
+    v: [[f32; LANES]; 3],
+    w: [[f32; LANES]; 3],
     /// Bound on the rounding of a product with a direction, for each unit of its length.
-    margin: R,
+    margin: [f32; LANES],
 }
 
-impl<R: Real> Aspect<R> {
+impl Aspect<f32x8> {
     /// The planes through the edges and the origin.
     #[inline]
-    pub fn edge_planes(&self) -> EdgePlanes<R> {
-        let size = |v: Vector3<R>| {
+    pub fn edge_planes(&self) -> EdgePlanes {
+        let size = |v: Vec3x8| {
             let v = v.abs();
             v.x + v.y + v.z
         };
@@ -89,8 +89,9 @@ impl<R: Real> Aspect<R> {
         let (u, v) = (e2.cross(self.s), self.q);
         let w = e2.cross(e1) - u - v;
         let (e1, e2) = (size(e1), size(e2));
-        let margin = R::splat(ULPS) * (size(self.s) * (e1 + e2) + e1 * e2) + R::splat(LEAST);
-        EdgePlanes { u, v, w, margin }
+        let margin = f32x8::splat(ULPS) * (size(self.s) * (e1 + e2) + e1 * e2) + f32x8::splat(LEAST);
+        let columns = |v: Vec3x8| [v.x.to_array(), v.y.to_array(), v.z.to_array()];
+        EdgePlanes { u: columns(u), v: columns(v), w: columns(w), margin: margin.to_array() }
     }
 }
 

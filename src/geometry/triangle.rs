@@ -21,7 +21,7 @@
 use glam::Vec3;
 
 use super::{Aabb, Ray, RayLanes, aabb, crossing::crossing};
-use crate::simd::{Mask, Real, Vector3, vector3};
+use crate::simd::{LANES, Mask, Real, Vector3, f32x8, vector3};
 
 /// Bound on the rounding of a numerator, in units of all its products: with a = |s| + |e₁| + |e₂| and
 /// e = |e₁| + |e₂|, by components, the sum of aᵢ·|dir|ⱼ·eₖ over the permutations of the axes. A product takes
@@ -153,20 +153,32 @@ pub struct Aspect<R> {
     pub q: Vector3<R>,
     /// What a direction's magnitudes are multiplied with to bound the rounding of a numerator.
     pub doubt: Vector3<R>,
+    /// The lower corners of their boxes.
+    pub min: Vector3<R>,
+    /// The upper corners.
+    pub max: Vector3<R>,
 }
 
-impl<R: Real> Aspect<R> {
+/// An [`Aspect`] in columns, from which lanes are read where they are needed.
+#[derive(Clone, Copy, Debug)]
+pub struct AspectColumns([[[f32; LANES]; 3]; 7]);
+
+impl AspectColumns {
+    /// From lanes.
+    #[inline]
+    pub fn new(aspect: &Aspect<f32x8>) -> Self {
+        let Aspect { e1, e2, s, q, doubt, min, max } = *aspect;
+        Self([e1, e2, s, q, doubt, min, max].map(|v| [v.x.to_array(), v.y.to_array(), v.z.to_array()]))
+    }
+
     /// One of the lanes, in all lanes.
     #[inline(always)]
-    pub fn splat(&self, lane: usize) -> Self {
-        let one = |v: &Vector3<R>| v.map(|x| R::splat(x.lane(lane)));
-        Self {
-            e1: one(&self.e1),
-            e2: one(&self.e2),
-            s: one(&self.s),
-            q: one(&self.q),
-            doubt: one(&self.doubt),
-        }
+    pub fn splat(&self, lane: usize) -> Aspect<f32x8> {
+        let [e1, e2, s, q, doubt, min, max] = [0, 1, 2, 3, 4, 5, 6].map(|of: usize| {
+            let [x, y, z] = &self.0[of];
+            vector3(f32x8::splat(x[lane]), f32x8::splat(y[lane]), f32x8::splat(z[lane]))
+        });
+        Aspect { e1, e2, s, q, doubt, min, max }
     }
 }
 
@@ -177,7 +189,8 @@ impl<R: Real> TriangleLanes<R> {
         let (e1, e2) = (self.v1 - self.v0, self.v2 - self.v0);
         let (s, e) = (org - self.v0, e1.abs() + e2.abs());
         let doubt = products(s.abs() + e, e).scale(R::splat(ULPS));
-        Aspect { e1, e2, s, q: s.cross(e1), doubt }
+        let (min, max) = (self.v0.min(self.v1).min(self.v2), self.v0.max(self.v1).max(self.v2));
+        Aspect { e1, e2, s, q: s.cross(e1), doubt, min, max }
     }
 
     /// Eight rays, eight triangles, or eight of each: (hit, t, u, v) of the lanes in `active`.
@@ -195,7 +208,7 @@ impl<R: Real> TriangleLanes<R> {
         ray: &RayLanes<R>,
         active: R::Mask,
     ) -> (R::Mask, R, R, R) {
-        let Aspect { e1, e2, s, q, doubt } = *aspect;
+        let Aspect { e1, e2, s, q, doubt, min, max } = *aspect;
         let p = ray.dir.cross(e2);
         let det = e1.dot(p);
         let u = s.dot(p);
@@ -220,9 +233,8 @@ impl<R: Real> TriangleLanes<R> {
             found = triangle.ask_again(&ray, doubtful, found);
         }
         let (hit, t, u, v) = found;
-        let bounds = (self.v0.min(self.v1).min(self.v2), self.v0.max(self.v1).max(self.v2));
         let all = (R::splat(f32::NEG_INFINITY), R::splat(f32::INFINITY));
-        let (low, high) = aabb::interval(bounds, (ray.org, ray.rdir), all);
+        let (low, high) = aabb::interval((min, max), (ray.org, ray.rdir), all);
         let t = high.min(low.max(t));
         (hit & low.le(high) & ray.t_near.lt(t) & t.le(ray.t_far), t, u, v)
     }
