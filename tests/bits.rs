@@ -47,13 +47,15 @@ const UNSORTED: Settings = Settings { backend: Backend::Packet, sort: false };
 const SCALAR: Settings = Settings { backend: Backend::Scalar, sort: true };
 
 /// Every way to render that must not be seen in the picture, beside packets on one thread.
-const WAYS: [(&str, Settings, usize); 6] = [
+const WAYS: [(&str, Settings, usize); 8] = [
     ("packet, 2 threads", PACKET, 2),
     ("packet, 3 threads", PACKET, 3),
     ("unsorted, 1 thread", UNSORTED, 1),
+    ("unsorted, 2 threads", UNSORTED, 2),
     ("unsorted, 3 threads", UNSORTED, 3),
     ("scalar, 1 thread", SCALAR, 1),
     ("scalar, 2 threads", SCALAR, 2),
+    ("scalar, 3 threads", SCALAR, 3),
 ];
 
 /// All files `scenes/*.xml`, by name.
