@@ -215,20 +215,24 @@ impl Surfaces {
         primitive: R::Bits,
     ) -> Part<R> {
         let index = |i: usize| (primitive.lane(i) - rows[i].first + rows[i].first_in_class) as usize;
-        let which =
-            |f: fn(&Class) -> bool| (0..R::LANES).fold(0, |bits, i| bits | u32::from(f(&rows[i].class)) << i);
-        let all = (1u32 << R::LANES) - 1;
-        let spheres = which(|class| matches!(class, Class::Sphere));
-        let canonicals = which(|class| matches!(class, Class::Canonical));
-        let triangles = all & !spheres & !canonicals;
+        let (mut triangles, mut spheres, mut canonicals) = (0u32, 0u32, 0u32);
+        let (mut smooth, mut mapped) = (0, 0);
+        for (i, row) in rows[..R::LANES].iter().enumerate() {
+            match row.class {
+                Class::Triangles { uv, normal } => {
+                    triangles |= 1 << i;
+                    smooth |= u32::from(normal == Interpolate::Vertices) << i;
+                    mapped |= u32::from(uv == Interpolate::Vertices) << i;
+                }
+                Class::Sphere => spheres |= 1 << i,
+                Class::Canonical => canonicals |= 1 << i,
+            }
+        }
 
         let mut part = if triangles != 0 {
             // Lanes of other classes read the first triangle there is, and are replaced below.
             let lane = triangles.trailing_zeros() as usize;
             let safe = |i: usize| index(if triangles >> i & 1 != 0 { i } else { lane });
-            let smooth =
-                which(|class| matches!(class, Class::Triangles { normal: Interpolate::Vertices, .. }));
-            let mapped = which(|class| matches!(class, Class::Triangles { uv: Interpolate::Vertices, .. }));
             self.triangles(safe, (smooth, mapped), (u, v))
         } else {
             Part {

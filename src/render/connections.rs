@@ -97,6 +97,7 @@ impl<'a> Connections<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::simd::Bits;
 
     #[test]
     fn light_arrives_at_its_vertex_unless_it_is_blocked() {

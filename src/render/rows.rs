@@ -23,7 +23,7 @@ pub(super) fn reserve<T: Clone>(slots: &mut BumpVec<T>, len: usize, fresh: T) {
 /// Number k of each of these slots in register k.
 #[inline]
 fn gather(rows: &[f32x8], slots: &[u32; LANES]) -> [f32x8; LANES] {
-    transpose(slots.map(|slot| rows[slot as usize]))
+    transpose(std::array::from_fn(|i| rows[slots[i] as usize]))
 }
 
 /// The other way round, for the first `count` slots.
@@ -165,6 +165,7 @@ impl<'a> Hits<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::simd::Bits;
 
     /// Numbers that say whose they are.
     fn packet(from: u32) -> Packet {

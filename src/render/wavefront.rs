@@ -281,7 +281,7 @@ impl Outgoing<f32x8> for Group<'_, '_> {
             return;
         }
         let branches = self.out.branches as u32;
-        let at = self.slots.map(|slot| slot * branches + index as u32);
+        let at: [u32; LANES] = std::array::from_fn(|i| self.slots[i] * branches + index as u32);
         let packet = Packet { org, dir, t_far: f32x8::splat(f32::INFINITY), path: *path, pixel: self.pixel };
         // Rows of paths that end here are written too, and left where they are.
         self.out.next.store(&at[..self.count], &packet);
