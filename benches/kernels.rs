@@ -39,7 +39,8 @@ fn triangle(c: &mut Criterion) {
             let all = Mask8::splat(true);
             let hits = triangles.iter().map(|t| {
                 let splat = Vector3::splat;
-                let lanes = TriangleLanes { v0: splat(t.v0), e1: splat(t.e1), e2: splat(t.e2) };
+                let (v0, v1, v2) = (splat(t.v0), splat(t.v1), splat(t.v2));
+                let lanes = TriangleLanes { v0, v1, v2, edges: f32x8::splat(t.edges()) };
                 lanes.intersect(&packet, all).0.count()
             });
             hits.sum::<u32>()

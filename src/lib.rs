@@ -39,5 +39,6 @@ pub mod load;
 pub mod render;
 // floor 7
 pub mod lobe;
+pub mod verify;
 // roof
 pub mod cli;

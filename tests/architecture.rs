@@ -32,6 +32,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("load", 5),
     ("render", 6),
     ("lobe", 7),
+    ("verify", 7),
     ("cli", 8),
 ];
 
@@ -52,13 +53,13 @@ const DOORS: &[(&str, &[&str])] = &[
     ("libm", &["compare/", "math/", "light/", "compile/", "load/", "picture/"]),
     ("miette", &["cli/", "load/error.rs"]),
     ("ply_rs_bw", &["load/ply.rs"]),
-    ("rayon", &["bvh/", "compile/", "render/", "lobe/", "cli/"]),
+    ("rayon", &["bvh/", "compile/", "render/", "lobe/", "verify/", "cli/"]),
     ("roxmltree", &["load/"]),
     ("serde", &["cli/", "load/sh.rs"]),
     ("serde_json", &["cli/", "load/sh.rs"]),
     ("strsim", &["load/"]),
-    // In `load/` only in tests.
-    ("tempfile", &["load/", "picture/"]),
+    // In `load/` and `cli/` only in tests.
+    ("tempfile", &["load/", "picture/", "cli/"]),
     ("thiserror", &[""]),
     ("tobj", &["load/obj.rs"]),
     ("wide", &["simd/"]),

@@ -3,8 +3,6 @@
 
 #![allow(missing_docs)]
 
-#[path = "traversal/aim.rs"]
-mod aim;
 #[path = "traversal/placed.rs"]
 mod placed;
 #[path = "traversal/scenes.rs"]
@@ -16,8 +14,8 @@ use packlight::compile::{Scene, compile};
 use packlight::geometry::{Hit, PrimitiveId, Ray, Ray32, RayLanes, Rayx8};
 use packlight::scene::{Instance, SceneDescription};
 use packlight::simd::{Mask8, Real, Vector3, f32x8};
+use packlight::verify::aim::{Random, rays_at};
 
-use aim::{Random, rays_at};
 use scenes::{shared, targets};
 
 fn bits(hit: Hit) -> (u32, u32, u32, PrimitiveId) {
@@ -31,6 +29,7 @@ fn packet(rays: &[Ray; 8]) -> Rayx8 {
         rdir: Vector3::from_fn(|i| rays[i].rdir),
         t_near: f32x8::from_fn(|i| rays[i].t_near),
         t_far: f32x8::from_fn(|i| rays[i].t_far),
+        margin: f32x8::splat(f32::INFINITY),
     }
 }
 

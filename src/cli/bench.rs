@@ -12,6 +12,7 @@ use super::{
     console,
     failure::{Failure, warn, warn_of},
     quality::QualityOption,
+    ray_file,
     source::{Source, definition},
     threads,
     way::WayName,
@@ -132,12 +133,7 @@ impl Arguments {
         let Some(path) = &self.rays else {
             return Ok(None);
         };
-        let refuse = |message: String| Failure::Sentence(format!("{}: {message}", path.display()));
-        let bytes = fs::read(path).map_err(|error| refuse(error.to_string()))?;
-        let RayFile { rays, invalid } = RayFile::decode(&bytes).map_err(|error| refuse(error.to_string()))?;
-        if rays.is_empty() {
-            return Err(refuse("there are no rays in the file".into()));
-        }
+        let RayFile { rays, invalid } = ray_file::read(path)?;
         Ok(Some((RayClass { name: "file", query: self.query, rays }, invalid)))
     }
 

@@ -2,7 +2,7 @@
 
 /// What was asked for was done.
 pub const SUCCESS: u8 = 0;
-/// A file could not be read, understood or written, or a model failed its check.
+/// A file could not be read, understood or written, or a model or scene failed its check.
 pub const FAILURE: u8 = 1;
 /// The command line was not understood.
 pub const USAGE: u8 = 2;

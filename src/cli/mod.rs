@@ -21,6 +21,7 @@ mod part_file;
 mod progress;
 mod quality;
 mod quantity;
+mod ray_file;
 mod render;
 mod replay;
 mod report;
@@ -29,6 +30,7 @@ mod signals;
 mod source;
 mod style;
 mod threads;
+mod verify;
 mod way;
 
 use std::{process::ExitCode, sync::LazyLock};
@@ -51,6 +53,7 @@ Examples:
   packlight compare reference.exr test.exr -o difference.png
   packlight info scenes/cornell.xml --json
   packlight bench gen:terrain:1M --threads 1
+  packlight verify scenes/cornell.xml
   packlight brdf roughconductor:alpha=0.3,material=Au -o lobe.svg
   packlight meter scenes/cornell.xml --at 0,0,0 --normal 0,1,0
   packlight envmap sky.exr --sh -o sky.json
@@ -58,7 +61,7 @@ Examples:
 
 Exit codes:
   0  done
-  1  a file could not be read, understood or written, or a model failed its check
+  1  a file could not be read, understood or written, or a model or scene failed its check
   2  the command line was not understood
   3  this processor lacks instructions that the program was compiled to use
   4  stopped by a signal; what was there was written";
@@ -83,6 +86,8 @@ enum Command {
     Info(info::Arguments),
     /// Measure how fast rays are traced
     Bench(bench::Arguments),
+    /// Prove that all ways of tracing a scene agree, and that nothing leaks
+    Verify(verify::Arguments),
     /// Plot a reflection model, or prove that it is one
     Brdf(Box<brdf::Arguments>),
     /// Measure the irradiance at a point
@@ -105,6 +110,7 @@ pub fn run() -> ExitCode {
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
+        Command::Verify(arguments) => verify::run(&arguments),
         Command::Brdf(arguments) => brdf::run(&arguments),
         Command::Meter(arguments) => meter::run(&arguments),
         Command::Envmap(arguments) => envmap::run(&arguments),

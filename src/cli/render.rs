@@ -129,7 +129,7 @@ pub(super) struct Arguments {
     #[arg(short, long)]
     quiet: bool,
 
-    /// Where the time went, and what a ray of each kind meets in the tree
+    /// What a ray of each kind meets in the tree
     #[arg(long, conflicts_with = "quiet")]
     stats: bool,
 
@@ -232,7 +232,7 @@ fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage),
         settings,
         summary: scene.summary(),
         statistics,
-        lesson: arguments.stats.then(|| Lesson::new(&scene, statistics.stages)),
+        lesson: arguments.stats.then(|| Lesson::new(&scene)),
         load_time,
         threads: rayon::current_num_threads(),
         peak_memory: memory::peak(),

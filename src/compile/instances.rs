@@ -16,7 +16,7 @@ use super::primitives::{INSTANCE, Primitives, accept, accept_single};
 use super::surfaces::Surfaces;
 use super::{CompileError, References, Summary, shapes};
 use crate::bvh::{Bvh, Hitx8, Quality, Reference, Traversal};
-use crate::geometry::{Hit, Placement, PrimitiveId, Ray, RayLanes, Rayx8};
+use crate::geometry::{Aabb, Hit, Placement, PrimitiveId, Ray, RayLanes, Rayx8};
 use crate::material::MaterialId;
 use crate::scene::{SceneDescription, ShapeGroup};
 use crate::simd::{Bits, Mask8, Real, f32x8, u32x8};
@@ -130,6 +130,16 @@ impl Instances {
         if !self.is_empty() {
             summary.instance_bytes = (own as f64 / self.placed.len() as f64 + share).round() as u64;
         }
+    }
+
+    /// How many there are.
+    pub(super) fn len(&self) -> usize {
+        self.placed.len()
+    }
+
+    /// The box of a primitive that is an instance.
+    pub(super) fn bounds(&self, primitive: u32) -> Option<Aabb> {
+        self.holds(primitive).then(|| self.placed[(primitive - self.first) as usize].placement.bounds)
     }
 
     /// Is nothing placed?

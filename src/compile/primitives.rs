@@ -1,14 +1,17 @@
 //! What can be hit, in leaf order: eight triangles or spheres to a block, in columns; what is rare, one by
 //! one.
 
+mod triangle_block;
+
 use rayon::prelude::*;
 
+use self::triangle_block::{TriangleBlock, row, set};
 use super::instances::Instances;
 use crate::bvh::{BLOCK, Hitx8, Leaves};
 use crate::geometry::{
-    Canonical, Hit, Pencils, PrimitiveId, Ray, RayLanes, Rayx8, Sphere, SphereLanes, Triangle, TriangleLanes,
+    AspectColumns, Canonical, Hit, Pencils, PrimitiveId, Ray, RayLanes, Rayx8, Sphere, SphereLanes, Triangle,
 };
-use crate::simd::{Bits, Mask, Mask8, Real, Vector3, f32x8, u32x8, vector3};
+use crate::simd::{Bits, Mask, Mask8, Real, Vector3, f32x8, u32x8};
 
 /// Classes of references, in the order of their blocks.
 pub(super) const TRIANGLE: u8 = 0;
@@ -25,16 +28,6 @@ pub(super) enum Primitive {
     Instance,
 }
 
-/// Eight triangles: 320 bytes. Padding has no edges, so its determinant is 0 and it is never hit.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-struct TriangleBlock {
-    v0: [[f32; 8]; 3],
-    e1: [[f32; 8]; 3],
-    e2: [[f32; 8]; 3],
-    id: [u32; 8],
-}
-
 /// Eight spheres. Padding is never asked for: leaves have counts.
 #[derive(Clone, Copy, Debug)]
 struct SphereBlock {
@@ -47,59 +40,12 @@ struct SphereBlock {
 #[derive(Debug, Default)]
 pub struct Primitives {
     triangles: Vec<TriangleBlock>,
+    /// For each slot of their blocks.
+    triangle_ids: Vec<u32>,
     spheres: Vec<SphereBlock>,
     /// One a slot; `None` is padding.
     canonicals: Vec<Option<(Canonical, u32)>>,
     pub(super) instances: Instances,
-}
-
-fn set(rows: &mut [[f32; 8]; 3], lane: usize, v: glam::Vec3) {
-    for axis in 0..3 {
-        rows[axis][lane] = v[axis];
-    }
-}
-
-fn row(rows: &[[f32; 8]; 3], lane: usize) -> glam::Vec3 {
-    glam::vec3(rows[0][lane], rows[1][lane], rows[2][lane])
-}
-
-impl TriangleBlock {
-    const EMPTY: Self = Self { v0: [[0.0; 8]; 3], e1: [[0.0; 8]; 3], e2: [[0.0; 8]; 3], id: [u32::MAX; 8] };
-
-    fn new(ids: &[u32], primitives: impl Fn(u32) -> Primitive) -> Self {
-        let mut block = Self::EMPTY;
-        for (lane, &id) in ids.iter().enumerate().filter(|&(_, &id)| id != u32::MAX) {
-            if let Primitive::Triangle(triangle) = primitives(id) {
-                set(&mut block.v0, lane, triangle.v0);
-                set(&mut block.e1, lane, triangle.e1);
-                set(&mut block.e2, lane, triangle.e2);
-                block.id[lane] = id;
-            }
-        }
-        block
-    }
-
-    #[inline]
-    fn lanes(&self) -> TriangleLanes<f32x8> {
-        let rows = |rows: &[[f32; 8]; 3]| vector3(rows[0].into(), rows[1].into(), rows[2].into());
-        TriangleLanes { v0: rows(&self.v0), e1: rows(&self.e1), e2: rows(&self.e2) }
-    }
-
-    /// A packet against the triangle in a lane.
-    #[inline]
-    fn intersect<const ANY: bool>(&self, lane: usize, ray: &Rayx8, active: Mask8, hit: &mut Hitx8) {
-        let splat = |rows| Vector3::splat(row(rows, lane));
-        let triangle = TriangleLanes { v0: splat(&self.v0), e1: splat(&self.e1), e2: splat(&self.e2) };
-        let (found, t, u, v) = triangle.intersect(&RayLanes { t_far: hit.t, ..*ray }, active);
-        if found.any() {
-            accept::<ANY>(hit, found, (t, u, v), || u32x8::splat(self.id[lane]));
-        }
-    }
-
-    #[inline]
-    fn triangle(&self, lane: usize) -> Triangle {
-        Triangle { v0: row(&self.v0, lane), e1: row(&self.e1, lane), e2: row(&self.e2, lane) }
-    }
 }
 
 impl SphereBlock {
@@ -144,6 +90,7 @@ impl Primitives {
         let (canonicals, placed) = rest.split_at(rest.partition_point(|block| class(block) == CANONICAL));
         instances.fill(placed.iter().flat_map(|ids| ids.iter().copied()));
         Self {
+            triangle_ids: slots[..triangles.len() * BLOCK].to_vec(),
             triangles: triangles.par_iter().map(|ids| TriangleBlock::new(ids, &primitives)).collect(),
             spheres: spheres.par_iter().map(|ids| SphereBlock::new(ids, &primitives)).collect(),
             canonicals: canonicals
@@ -161,6 +108,7 @@ impl Primitives {
     /// Bytes that tracing reads, without those of instances.
     pub fn bytes(&self) -> usize {
         size_of_val(self.triangles.as_slice())
+            + size_of_val(self.triangle_ids.as_slice())
             + size_of_val(self.spheres.as_slice())
             + size_of_val(self.canonicals.as_slice())
     }
@@ -267,7 +215,12 @@ impl Leaves for Primitives {
             let limited = RayLanes { t_far: hit.t, ..*ray };
             let zero = f32x8::zero();
             match class {
-                TRIANGLE => self.triangles[block].intersect::<ANY>(lane, ray, active, hit),
+                TRIANGLE => {
+                    let id = &self.triangle_ids[block * BLOCK + lane];
+                    let block = &self.triangles[block];
+                    let aspect = block.splat(lane).aspect(ray.org);
+                    block.intersect::<ANY>((lane, id), &aspect, ray, active, hit);
+                }
                 SPHERE => {
                     let block = &self.spheres[block];
                     let sphere = SphereLanes {
@@ -303,15 +256,24 @@ impl Leaves for Primitives {
             }
             return mask.count_ones() * count;
         };
-        let planes = block.lanes().edge_planes(pencils.org());
+        // From the one origin of all, for all triangles of the block at once.
+        let aspects = block.lanes().aspect(Vector3::splat(pencils.org()));
+        let (planes, aspects) = (aspects.edge_planes(), AspectColumns::new(&aspects));
         let (lane, mut tests) = (first as usize % BLOCK, 0);
         for lane in lane..lane + count as usize {
+            let id = &self.triangle_ids[first as usize / BLOCK * BLOCK + lane];
             let mut left = mask & pencils.meet(&planes, lane).to_bitmask();
             tests += left.count_ones();
             while left != 0 {
                 let packet = left.trailing_zeros() as usize % 8;
                 left &= left - 1;
-                block.intersect::<ANY>(lane, &packets[packet], every, &mut hits[packet]);
+                block.intersect::<ANY>(
+                    (lane, id),
+                    &aspects.splat(lane),
+                    &packets[packet],
+                    every,
+                    &mut hits[packet],
+                );
             }
         }
         tests
@@ -322,7 +284,7 @@ impl Leaves for Primitives {
         if (first as usize) < self.triangles.len() * BLOCK { 1 } else { count }
     }
 
-    #[inline]
+    #[inline(always)]
     fn intersect_block<const ANY: bool>(
         &self,
         first: u32,
@@ -341,7 +303,8 @@ impl Leaves for Primitives {
         while found != 0 {
             let lane = found.trailing_zeros() as usize % 8;
             found &= found - 1;
-            accept_single::<ANY>(hit, (t.lane(lane), u.lane(lane), v.lane(lane)), block.id[lane]);
+            let id = if ANY { 0 } else { self.triangle_ids[first as usize / BLOCK * BLOCK + lane] };
+            accept_single::<ANY>(hit, (t.lane(lane), u.lane(lane), v.lane(lane)), id);
         }
     }
 
@@ -352,9 +315,8 @@ impl Leaves for Primitives {
             let limited = Ray { t_far: hit.t, ..*ray };
             match class {
                 TRIANGLE => {
-                    let block = &self.triangles[block];
-                    if let Some(found) = block.triangle(lane).intersect(&limited) {
-                        accept_single::<ANY>(hit, found, block.id[lane]);
+                    if let Some(found) = self.triangles[block].triangle(lane).intersect(&limited) {
+                        accept_single::<ANY>(hit, found, self.triangle_ids[block * BLOCK + lane]);
                     }
                 }
                 SPHERE => {

@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 
-use super::{Scene, Surface};
+use super::{Scene, Surface, primitives::Primitive};
 use crate::bvh::{Hitx8, Stream, Tally, Tracer, Traversal, Way};
-use crate::geometry::{Hit, PrimitiveId, Ray, Rayx8};
+use crate::geometry::{Aabb, Hit, PrimitiveId, Ray, Rayx8};
 use crate::material::MaterialId;
 use crate::simd::{Bits, Mask8, Real, Vector3, f32x8, u32x8};
 
@@ -77,6 +77,12 @@ impl Scene {
         self.extent
     }
 
+    /// Does it take chance to sample one light: to choose it, or a direction towards it?
+    #[inline]
+    pub(crate) fn draws_lights(&self) -> bool {
+        !matches!(self.lights.as_slice(), [light] if !light.is_drawn())
+    }
+
     /// The material of what was hit; `u` is the hit's.
     #[inline]
     pub fn material(&self, primitive: PrimitiveId, u: f32) -> MaterialId {
@@ -102,5 +108,28 @@ impl Scene {
             return instances.surface(&self.surfaces, ray, (tuv, primitive), oriented);
         }
         self.surfaces.at(ray, tuv, primitive, oriented)
+    }
+
+    /// How many primitives there are, those without area included and an instance as one; their ids are less.
+    pub fn primitive_count(&self) -> u32 {
+        (self.surfaces.shape_of.len() + self.primitives.instances.len()) as u32
+    }
+
+    /// The vertices of a primitive in the world; `None` if it is no triangle.
+    pub fn triangle(&self, primitive: PrimitiveId) -> Option<[Vec3; 3]> {
+        let instance = self.primitives.instances.holds(primitive.0);
+        if instance { None } else { self.surfaces.corners(primitive.0) }
+    }
+
+    /// The box that decides a primitive's hits.
+    pub fn primitive_bounds(&self, primitive: PrimitiveId) -> Aabb {
+        self.primitives.instances.bounds(primitive.0).unwrap_or_else(|| {
+            match self.surfaces.primitive(primitive.0) {
+                Primitive::Triangle(triangle) => triangle.bounds(),
+                Primitive::Sphere(sphere) => sphere.bounds(),
+                Primitive::Canonical(surface) => surface.bounds,
+                Primitive::Instance => Aabb::EMPTY,
+            }
+        })
     }
 }

@@ -102,7 +102,7 @@ impl Shapes {
         let light = match shape.radiance {
             Some(radiance) if self.references.len() > references => {
                 let extent = emitter_extent(&emitting);
-                lights.push(Light::Area(AreaLight { radiance, shape: emitting, side, extent }));
+                lights.push(Light::Area(AreaLight { radiance, shape: emitting, side, extent, bounds }));
                 LightId(lights.len() as u32 - 1)
             }
             _ => LightId::NONE,
@@ -141,7 +141,7 @@ impl Shapes {
         let mut emitting = Vec::new();
         for index in first..self.surfaces.triangles.len() {
             let triangle = self.surfaces.triangle(index);
-            if triangle.e1.cross(triangle.e2) == Vec3::ZERO {
+            if triangle.e1().cross(triangle.e2()) == Vec3::ZERO {
                 // Its determinant would be noise: a hit where there is nothing.
                 self.number();
                 self.degenerate += 1;
@@ -173,7 +173,7 @@ fn emitter_extent(emitting: &Emitting) -> Vec3 {
     match emitting {
         Emitting::Sphere(sphere) => Vec3::splat(sphere.radius),
         Emitting::Triangles { triangles, .. } => {
-            triangles.iter().fold(Vec3::ZERO, |extent, t| extent.max(t.e1.abs() + t.e2.abs()))
+            triangles.iter().fold(Vec3::ZERO, |extent, t| extent.max(t.e1().abs() + t.e2().abs()))
         }
         Emitting::Canonical { axes, .. } => axes.iter().fold(Vec3::ZERO, |sum, axis| sum + axis.abs()),
     }
@@ -183,6 +183,14 @@ impl Surfaces {
     fn triangle(&self, index: usize) -> Triangle {
         let [v0, v1, v2] = self.triangles[index].map(|i| self.vertices[i as usize].position);
         Triangle::new(v0, v1, v2)
+    }
+
+    /// The vertices of a primitive that is a triangle.
+    pub(super) fn corners(&self, id: u32) -> Option<[Vec3; 3]> {
+        let shape = self.shape(id);
+        let index = (id - shape.first + shape.first_in_class) as usize;
+        matches!(shape.class, Class::Triangles { .. })
+            .then(|| self.triangles[index].map(|i| self.vertices[i as usize].position))
     }
 
     /// What the kernels need of a primitive.

@@ -43,25 +43,6 @@ impl Sums {
         self.counts[pixel] += 1;
     }
 
-    /// Adds to one channel, and to those pixels for which `chosen` is true, `values[i]` · `weights[i]` at the
-    /// pixel `pixels[i]`.
-    #[inline]
-    pub(super) fn add_plane(
-        &mut self,
-        channel: usize,
-        pixels: &[u32],
-        (values, weights): (&[f32], &[f32]),
-        chosen: impl Fn(usize) -> bool,
-    ) {
-        let length = self.counts.len();
-        let plane = &mut self.values[channel * length..][..length];
-        for (i, ((&pixel, value), weight)) in pixels.iter().zip(values).zip(weights).enumerate() {
-            if chosen(i) {
-                plane[pixel as usize] += value * weight;
-            }
-        }
-    }
-
     /// These and later ones.
     pub fn absorb(&mut self, later: &Self) {
         for (sum, more) in self.values.iter_mut().zip(&later.values) {

@@ -90,35 +90,6 @@ impl TileFilm {
         self.open.add(pixel, weight, value);
     }
 
-    /// [`add`](Self::add) for all pixels at once: the i-th value of each plane, of the i-th weight, belongs to
-    /// the i-th of `pixels`. Plane after plane, so that many of them stay cheap.
-    pub fn add_all<'a>(
-        &mut self,
-        pixels: &[u32],
-        weights: &[f32],
-        planes: impl Iterator<Item = &'a [f32]> + Clone,
-    ) {
-        let mut finite = vec![true; pixels.len()];
-        for plane in planes.clone() {
-            finite.iter_mut().zip(plane).for_each(|(finite, value)| *finite &= value.is_finite());
-        }
-        let all = finite.iter().all(|&finite| finite);
-        for (channel, plane) in planes.enumerate() {
-            match all {
-                true => self.open.add_plane(channel, pixels, (plane, weights), |_| true),
-                false => self.open.add_plane(channel, pixels, (plane, weights), |i| finite[i]),
-            }
-        }
-        for ((&pixel, weight), finite) in pixels.iter().zip(weights).zip(finite) {
-            if finite {
-                self.open.weights[pixel as usize] += weight;
-                self.open.counts[pixel as usize] += 1;
-            } else {
-                self.keep_out(pixel);
-            }
-        }
-    }
-
     fn keep_out(&mut self, pixel: u32) {
         self.invalid += 1;
         let place = (pixel, self.samples.end);
@@ -241,32 +212,6 @@ mod tests {
         let total = film.total();
         assert_eq!((total.mean(1, 0), total.mean(0, 0)), (3.0, 1.0));
         assert_eq!((film.invalid, film.first_invalid), (2, Some((0, 2))));
-    }
-
-    #[test]
-    fn all_at_once_is_one_by_one() {
-        let value = |sample: u32, pixel: u32, c: u32| {
-            if sample == 3 && pixel == 2 && c == 1 {
-                f32::INFINITY
-            } else {
-                noise(sample * 50 + pixel * 5 + c)
-            }
-        };
-        let (mut one, mut all) = (TileFilm::new(4, 3, 0), TileFilm::new(4, 3, 0));
-        let order = [2, 0, 3, 1];
-        let weights = [1.0, -1.0, 1.0, 1.0];
-        for sample in 0..20 {
-            for (pixel, weight) in order.into_iter().zip(weights) {
-                one.add(pixel as usize, weight, |c| value(sample, pixel, c as u32));
-            }
-            let planes: Vec<Vec<f32>> =
-                (0..3).map(|c| order.map(|pixel| value(sample, pixel, c)).into()).collect();
-            all.add_all(&order, &weights, planes.iter().map(Vec::as_slice));
-            one.finish_sample();
-            all.finish_sample();
-        }
-        assert_eq!(one.invalid, 1);
-        assert_eq!(all, one);
     }
 
     #[test]

@@ -7,60 +7,99 @@
 //! u = s·p / det     v = dir·q / det     t = e₂·q / det
 //! ```
 //!
-//! A hit has u ≥ 0, v ≥ 0 and u + v ≤ 1. Only det = 0 is parallel: a small triangle has a small
-//! determinant and is no less a triangle. Unlike the paper there is no culling and no epsilon, and t is
-//! clamped to the triangle's own slabs (see [`geometry`](super)).
+//! A hit has u ≥ 0, v ≥ 0 and w = 1 − u − v ≥ 0: det and the numerators of all three have one sign. Unlike
+//! the paper there is no culling and no epsilon, and t is clamped to the triangle's own slabs (see
+//! [`geometry`](super)).
+//!
+//! Numerators are rounded by less than a margin that grows with the edges and the distance. Beyond it their
+//! signs are certain. Within it two neighbours might both say that the ray is on the other's side of their
+//! edge; there, and for hardly any ray, [`crossing`] decides, which can't.
+//!
+//! In lanes, a bound on the margins of all triangles of the scene, known for a ray before it meets any, sorts
+//! out those that are far beside the ray with a multiplication and a comparison.
 
 use glam::Vec3;
 
-use super::{Aabb, Ray, RayLanes, aabb};
-use crate::simd::{Mask, Real, Vector3};
+use super::{Aabb, Ray, RayLanes, aabb, crossing::crossing};
+use crate::simd::{LANES, Mask, Real, Vector3, f32x8, vector3};
 
-/// A vertex and two edges.
+/// Bound on the rounding of a numerator, in units of all its products: with a = |s| + |e₁| + |e₂| and
+/// e = |e₁| + |e₂|, by components, the sum of aᵢ·|dir|ⱼ·eₖ over the permutations of the axes. A product takes
+/// part in at most 7 roundings, two of them of the differences that s and an edge are; w adds two more. These
+/// are 12, for the margin is rounded itself.
+const ULPS: f32 = 6.0 * f32::EPSILON;
+/// Against products that underflow.
+const LEAST: f32 = 1e-34;
+
+/// Three vertices: all that neighbours share to the bit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle {
     /// First vertex.
     pub v0: Vec3,
-    /// v₁ − v₀.
-    pub e1: Vec3,
-    /// v₂ − v₀.
-    pub e2: Vec3,
+    /// Second vertex.
+    pub v1: Vec3,
+    /// Third vertex.
+    pub v2: Vec3,
 }
 
 impl Triangle {
     /// From three vertices.
     #[inline]
     pub fn new(v0: Vec3, v1: Vec3, v2: Vec3) -> Self {
-        Self { v0, e1: v1 - v0, e2: v2 - v0 }
+        Self { v0, v1, v2 }
     }
 
-    /// The box that decides hits: of v₀, v₀ + e₁ and v₀ + e₂ as they round.
+    /// v₁ − v₀.
+    #[inline]
+    pub fn e1(&self) -> Vec3 {
+        self.v1 - self.v0
+    }
+
+    /// v₂ − v₀.
+    #[inline]
+    pub fn e2(&self) -> Vec3 {
+        self.v2 - self.v0
+    }
+
+    /// |e₁| + |e₂| by sums of absolute components: kept beside the vertices, it is what the bound on rounding
+    /// needs.
+    #[inline]
+    pub fn edges(&self) -> f32 {
+        size(self.e1()) + size(self.e2())
+    }
+
+    /// The box that decides hits.
     #[inline]
     pub fn bounds(&self) -> Aabb {
-        Aabb::of_points([self.v0, self.v0 + self.e1, self.v0 + self.e2])
+        Aabb::of_points([self.v0, self.v1, self.v2])
     }
 
     /// One ray: (t, u, v).
     #[inline]
     pub fn intersect(&self, ray: &Ray) -> Option<(f32, f32, f32)> {
-        let p = ray.dir.cross(self.e2);
-        let det = self.e1.dot(p);
-        if det == 0.0 {
-            return None;
-        }
-        let inverse = 1.0 / det;
+        let (e1, e2) = (self.e1(), self.e2());
+        let p = ray.dir.cross(e2);
+        let det = e1.dot(p);
         let s = ray.org - self.v0;
-        let u = s.dot(p) * inverse;
-        if !(0.0..=1.0).contains(&u) {
+        let u = s.dot(p);
+        let q = s.cross(e1);
+        let v = ray.dir.dot(q);
+        let w = det - u - v;
+        let least = Real::min(Real::min(u, v), w);
+        let greatest = Real::max(Real::max(u, v), w);
+        let inside = Real::max(least, -greatest);
+        let (d, e) = (ray.dir.abs(), e1.abs() + e2.abs());
+        let a = s.abs() + e;
+        let products = Vec3::new(a.y * e.z + a.z * e.y, a.z * e.x + a.x * e.z, a.x * e.y + a.y * e.x);
+        let margin = d.dot(products * ULPS) + LEAST;
+        let (t, u, v) = if inside > margin {
+            let inverse = 1.0 / det;
+            (e2.dot(q) * inverse + 0.0, u * inverse, v * inverse)
+        } else if inside >= -margin {
+            crossing(ray.org, ray.dir, [self.v0, self.v1, self.v2])?
+        } else {
             return None;
-        }
-        let q = s.cross(self.e1);
-        let v = ray.dir.dot(q) * inverse;
-        let inside = v >= 0.0 && u + v <= 1.0;
-        if !inside {
-            return None;
-        }
-        let t = self.e2.dot(q) * inverse;
+        };
         let (low, high) =
             self.bounds().interval(&Ray { t_near: f32::NEG_INFINITY, t_far: f32::INFINITY, ..*ray });
         let t = Real::min(high, Real::max(low, t));
@@ -68,42 +107,160 @@ impl Triangle {
     }
 }
 
+/// |x| + |y| + |z|.
+fn size(v: Vec3) -> f32 {
+    let v = v.abs();
+    v.x + v.y + v.z
+}
+
+/// A bound on the margin of any triangle whose coordinates are at most `reach` in magnitude, for each unit of
+/// its [`edges`](Triangle::edges): no vertex is farther from the origin of the ray than org + reach, no edge
+/// longer than 2·reach. A fifth more, against the rounding of the margins themselves.
+#[inline]
+pub(super) fn margin_within<R: Real>(org: Vector3<R>, dir: Vector3<R>, reach: Vec3) -> R {
+    products(org.abs() + Vector3::splat(reach * 5.0), dir.abs()).max_element() * R::splat(1.2 * ULPS)
+}
+
+/// aⱼ·bₖ + aₖ·bⱼ for each axis i and the two others.
+#[inline]
+fn products<R: Real>(a: Vector3<R>, b: Vector3<R>) -> Vector3<R> {
+    vector3(a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x)
+}
+
 /// Triangles in lanes: eight of a block, or one in all of them.
 #[derive(Clone, Copy, Debug)]
 pub struct TriangleLanes<R> {
     /// First vertices.
     pub v0: Vector3<R>,
-    /// v₁ − v₀.
+    /// Second vertices.
+    pub v1: Vector3<R>,
+    /// Third vertices.
+    pub v2: Vector3<R>,
+    /// [`Triangle::edges`].
+    pub edges: R,
+}
+
+/// Triangles as they are seen from where rays start: what of the test does not depend on a direction.
+#[derive(Clone, Copy, Debug)]
+pub struct Aspect<R> {
+    /// e₁.
     pub e1: Vector3<R>,
-    /// v₂ − v₀.
+    /// e₂.
     pub e2: Vector3<R>,
+    /// org − v₀.
+    pub s: Vector3<R>,
+    /// s × e₁.
+    pub q: Vector3<R>,
+    /// What a direction's magnitudes are multiplied with to bound the rounding of a numerator.
+    pub doubt: Vector3<R>,
+    /// The lower corners of their boxes.
+    pub min: Vector3<R>,
+    /// The upper corners.
+    pub max: Vector3<R>,
+}
+
+/// An [`Aspect`] in columns, from which lanes are read where they are needed.
+#[derive(Clone, Copy, Debug)]
+pub struct AspectColumns([[[f32; LANES]; 3]; 7]);
+
+impl AspectColumns {
+    /// From lanes.
+    #[inline]
+    pub fn new(aspect: &Aspect<f32x8>) -> Self {
+        let Aspect { e1, e2, s, q, doubt, min, max } = *aspect;
+        Self([e1, e2, s, q, doubt, min, max].map(|v| [v.x.to_array(), v.y.to_array(), v.z.to_array()]))
+    }
+
+    /// One of the lanes, in all lanes.
+    #[inline(always)]
+    pub fn splat(&self, lane: usize) -> Aspect<f32x8> {
+        let [e1, e2, s, q, doubt, min, max] = [0, 1, 2, 3, 4, 5, 6].map(|of: usize| {
+            let [x, y, z] = &self.0[of];
+            vector3(f32x8::splat(x[lane]), f32x8::splat(y[lane]), f32x8::splat(z[lane]))
+        });
+        Aspect { e1, e2, s, q, doubt, min, max }
+    }
 }
 
 impl<R: Real> TriangleLanes<R> {
+    /// As seen from an origin.
+    #[inline(always)]
+    pub fn aspect(&self, org: Vector3<R>) -> Aspect<R> {
+        let (e1, e2) = (self.v1 - self.v0, self.v2 - self.v0);
+        let (s, e) = (org - self.v0, e1.abs() + e2.abs());
+        let doubt = products(s.abs() + e, e).scale(R::splat(ULPS));
+        let (min, max) = (self.v0.min(self.v1).min(self.v2), self.v0.max(self.v1).max(self.v2));
+        Aspect { e1, e2, s, q: s.cross(e1), doubt, min, max }
+    }
+
     /// Eight rays, eight triangles, or eight of each: (hit, t, u, v) of the lanes in `active`.
-    #[inline]
+    // Always: as a call, rays and triangles would go through memory.
+    #[inline(always)]
     pub fn intersect(&self, ray: &RayLanes<R>, active: R::Mask) -> (R::Mask, R, R, R) {
-        let zero = R::zero();
-        let p = ray.dir.cross(self.e2);
-        let det = self.e1.dot(p);
-        let inverse = R::one() / det;
-        let s = ray.org - self.v0;
-        let u = s.dot(p) * inverse;
-        let q = s.cross(self.e1);
-        let v = ray.dir.dot(q) * inverse;
-        let t = self.e2.dot(q) * inverse;
-        // det = 0 gives an infinite or NaN inverse: u or v fails its comparison, or both numerators are
-        // zero too and the products are NaN.
-        let inside = u.ge(zero) & v.ge(zero) & (u + v).le(R::one()) & active & !det.equal(zero);
-        if inside.none() {
-            return (inside, t, u, v);
+        self.intersect_seen(&self.aspect(ray.org), ray, active)
+    }
+
+    /// [`intersect`](Self::intersect), for rays whose origin the triangles have been seen from.
+    #[inline(always)]
+    pub fn intersect_seen(
+        &self,
+        aspect: &Aspect<R>,
+        ray: &RayLanes<R>,
+        active: R::Mask,
+    ) -> (R::Mask, R, R, R) {
+        let Aspect { e1, e2, s, q, doubt, min, max } = *aspect;
+        let p = ray.dir.cross(e2);
+        let det = e1.dot(p);
+        let u = s.dot(p);
+        let v = ray.dir.dot(q);
+        let w = det - u - v;
+        let inside = u.min(v).min(w).max(-u.max(v).max(w));
+        let near = R::splat(-LEAST).le(self.edges * ray.margin + inside) & active;
+        if near.none() {
+            return (near, u, u, v);
         }
-        let (v1, v2) = (self.v0 + self.e1, self.v0 + self.e2);
-        let bounds = (self.v0.min(v1).min(v2), self.v0.max(v1).max(v2));
+        let margin = ray.dir.abs().dot(doubt) + R::splat(LEAST);
+        let possible = (-margin).le(inside) & near;
+        let certain = margin.lt(inside);
+        let inverse = R::one() / det;
+        // A zero added: rays from +0 and from −0 see the same aspect, and have the same t.
+        let t = e2.dot(q) * inverse + R::zero();
+        let mut found = (possible & certain, t, u * inverse, v * inverse);
+        let doubtful = possible & !certain;
+        if doubtful.any() {
+            // Copies, so that the originals need not be in memory for this.
+            let (triangle, ray) = (*self, *ray);
+            found = triangle.ask_again(&ray, doubtful, found);
+        }
+        let (hit, t, u, v) = found;
         let all = (R::splat(f32::NEG_INFINITY), R::splat(f32::INFINITY));
-        let (low, high) = aabb::interval(bounds, (ray.org, ray.rdir), all);
+        let (low, high) = aabb::interval((min, max), (ray.org, ray.rdir), all);
         let t = high.min(low.max(t));
-        (inside & low.le(high) & ray.t_near.lt(t) & t.le(ray.t_far), t, u, v)
+        (hit & low.le(high) & ray.t_near.lt(t) & t.le(ray.t_far), t, u, v)
+    }
+
+    /// Replaces the answers of some lanes by those of [`crossing`].
+    #[cold]
+    #[inline(never)]
+    fn ask_again(
+        &self,
+        ray: &RayLanes<R>,
+        lanes: R::Mask,
+        (hit, t, u, v): (R::Mask, R, R, R),
+    ) -> (R::Mask, R, R, R) {
+        let (mut bits, mut left) = (hit.to_bitmask(), lanes.to_bitmask());
+        let mut rows = [t, u, v].map(|row| [0, 1, 2, 3, 4, 5, 6, 7].map(|i| row.lane(i % R::LANES)));
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize % 8;
+            left &= left - 1;
+            let vertices = [self.v0.lane(lane), self.v1.lane(lane), self.v2.lane(lane)];
+            if let Some((t, u, v)) = crossing(ray.org.lane(lane), ray.dir.lane(lane), vertices) {
+                bits |= 1 << lane;
+                [rows[0][lane], rows[1][lane], rows[2][lane]] = [t, u, v];
+            }
+        }
+        let [t, u, v] = rows.map(|row| R::from_fn(|lane| row[lane]));
+        (R::Mask::from_bitmask(bits), t, u, v)
     }
 }
 

@@ -24,6 +24,9 @@ use scattered::{Scattered, tabulate};
 
 /// Wavelengths in one file: more is a mistake, not an instrument.
 const MAX_WAVELENGTHS: usize = 1024;
+/// Measurements in one file. Each is compared with each node of the table that they become, so their number is a
+/// matter of seconds; an instrument has some 1,400.
+const MAX_MEASUREMENTS: usize = 10_000;
 /// Directions may lie below the horizon by the last digit that was written.
 const HORIZON: f64 = FRAC_PI_2 + 1e-5;
 
@@ -73,6 +76,10 @@ fn parse(path: &Path, text: &str) -> Result<Vec<Scattered>, LoadError> {
             values.push(numbers.next(&format!("f at {wavelength} nm"))?.value);
         }
         let (theta_i, theta_o) = (theta_i.min(FRAC_PI_2), theta_o.min(FRAC_PI_2));
+        if found.len() == MAX_MEASUREMENTS {
+            return Err(LoadError::new(path, format!("has more than {MAX_MEASUREMENTS} measurements"))
+                .help("leave some out: the table that is made of them is coarser than that"));
+        }
         found.push(Scattered { theta_i, theta_o, turn: phi_o - phi_i, value: observer.rgb(&values) });
     }
     Ok(found)
@@ -132,6 +139,13 @@ mod tests {
         assert_eq!(found.len(), 2);
         assert_eq!((found[1].theta_i, found[1].theta_o, found[1].turn), (0.3, 0.2, 0.0));
         assert_eq!(found[0].value, found[1].value);
+    }
+
+    #[test]
+    fn there_may_be_too_many() {
+        let many = |count| "1\n500\n".to_owned() + &"0.1 0 0.2 0 0.5\n".repeat(count);
+        assert_eq!(parse(Path::new("a.brdf"), &many(MAX_MEASUREMENTS)).unwrap().len(), MAX_MEASUREMENTS);
+        assert_eq!(refusal(&many(MAX_MEASUREMENTS + 1)), "a.brdf: has more than 10000 measurements");
     }
 
     #[test]

@@ -13,6 +13,9 @@ use miette::{Diagnostic, NamedSource, SourceSpan};
 #[derive(Debug, Clone)]
 pub struct LoadError(Box<Inner>);
 
+/// Text longer than this is not shown with an error: files without line breaks are one line.
+const MAX_SHOWN: usize = 4096;
+
 #[derive(Debug, Clone)]
 struct Inner {
     place: String,
@@ -40,10 +43,12 @@ impl LoadError {
         let name = path.display().to_string();
         let mut error = Self::new(path, message);
         error.0.place = place(path, text, start);
-        error.0.excerpt = Some((
-            NamedSource::new(name, text.to_owned()),
-            (start, range.end.min(text.len()).saturating_sub(start)).into(),
-        ));
+        if shown(text, start) <= MAX_SHOWN {
+            error.0.excerpt = Some((
+                NamedSource::new(name, text.to_owned()),
+                (start, range.end.min(text.len()).saturating_sub(start)).into(),
+            ));
+        }
         error
     }
 
@@ -73,6 +78,15 @@ pub(super) fn place(path: &Path, text: &str, byte: usize) -> String {
     let line = before.matches('\n').count() + 1;
     let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
     format!("{}:{line}:{column}", path.display())
+}
+
+/// Bytes of the line in which a byte stands, and of its neighbours.
+fn shown(text: &str, byte: usize) -> usize {
+    let (before, after) = text.split_at(byte);
+    let length = |line: Option<&str>| line.map_or(0, str::len);
+    let mut before = before.rsplit('\n');
+    let mut after = after.split('\n');
+    [before.next(), before.next(), after.next(), after.next()].into_iter().map(length).sum()
 }
 
 /// The last boundary of a character at or before a byte.
@@ -122,6 +136,19 @@ impl fmt::Display for Warning {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lines_without_end_are_not_shown() {
+        for (text, is_shown) in [
+            ("a\nb\nc".to_owned(), true),
+            (format!("a\nb\nc\n{}", "d".repeat(5000)), true),
+            (format!("a\nb\n{}", "c".repeat(5000)), false),
+            (format!("{}\nb", "a".repeat(5000)), false),
+        ] {
+            let error = LoadError::at(Path::new("f"), &text, 2..3, "");
+            assert_eq!(error.source_code().is_some(), is_shown, "{}", text.len());
+        }
+    }
 
     #[test]
     fn places_count_characters_from_one() {

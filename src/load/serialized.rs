@@ -29,6 +29,9 @@ const DOUBLE: u32 = 0x2000;
 /// No deflate stream grows by more than this.
 const MAX_EXPANSION: u128 = 1032;
 
+/// Bytes of a name: more is a stream that is something else.
+const MAX_NAME: usize = 4096;
+
 /// A mesh, and whether the file asks for it to be shaded flat.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Serialized {
@@ -95,7 +98,7 @@ impl Stream<'_> {
     fn mesh(&mut self, version: u16) -> Result<Serialized, String> {
         let flags = u32::from_le_bytes(self.array("the flags")?);
         if version == 4 {
-            while self.array::<1>("the name")? != [0] {}
+            self.skip_name()?;
         }
         let vertices = u64::from_le_bytes(self.array("the number of vertices")?);
         let triangles = u64::from_le_bytes(self.array("the number of triangles")?);
@@ -136,6 +139,15 @@ impl Stream<'_> {
         }
         mesh.triangles = indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
         Ok(Serialized { mesh, face_normals: has(FACE_NORMALS) })
+    }
+
+    fn skip_name(&mut self) -> Result<(), String> {
+        for _ in 0..=MAX_NAME {
+            if self.array::<1>("the name")? == [0] {
+                return Ok(());
+            }
+        }
+        Err(format!("its name has more than {MAX_NAME} bytes"))
     }
 
     fn vectors(&mut self, count: usize, double: bool, what: &str) -> Result<Vec<Vec3>, String> {

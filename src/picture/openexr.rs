@@ -12,6 +12,9 @@ use super::{Channel, Picture, exr_header, limits};
 /// The first bytes of every OpenEXR file.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
+/// None of the compressions grows by more than this: deflate by 1032, and PXR24 by a third more.
+const MAX_EXPANSION: u64 = 2048;
+
 /// How an OpenEXR file holds a picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExrStyle {
@@ -135,9 +138,19 @@ fn explain(error: &Error) -> String {
 /// Refuses what can't be read before memory is taken for it.
 fn check_header(bytes: &[u8]) -> Result<(), String> {
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|error| explain(&error))?;
+    let mut unpacked = 0;
     for header in &meta.headers {
         let size = header.layer_size;
         limits::check(size.width() as u64, size.height() as u64, header.channels.list.len() as u64)?;
+        unpacked += size.area() as u64 * header.channels.bytes_per_pixel as u64;
+        if unpacked > bytes.len() as u64 * MAX_EXPANSION {
+            return Err(format!(
+                "damaged EXR file (it announces {} × {} pixels, more than its {} bytes can hold)",
+                size.width(),
+                size.height(),
+                bytes.len()
+            ));
+        }
         if header.deep {
             return Err("deep EXR files are not supported; flatten the file first".into());
         }
@@ -271,5 +284,17 @@ mod tests {
         }
         let style = ExrStyle { attributes: vec![("x".repeat(32), String::new())], ..ExrStyle::default() };
         assert!(encode(&original, &style).is_err());
+    }
+
+    #[test]
+    fn more_than_the_file_can_hold_is_refused_before_it_is_unpacked() {
+        let mut bytes = encode(&picture(&["R", "G", "B"]), &ExrStyle::default()).unwrap();
+        for name in [&b"dataWindow\0box2i\0"[..], b"displayWindow\0box2i\0"] {
+            let at = bytes.windows(name.len()).position(|w| w == name).unwrap() + name.len() + 4;
+            bytes[at + 8..at + 12].copy_from_slice(&29_999_i32.to_le_bytes());
+            bytes[at + 12..at + 16].copy_from_slice(&9_999_i32.to_le_bytes());
+        }
+        let error = decode(&bytes).unwrap_err();
+        assert!(error.contains("30000 × 10000 pixels, more than its"), "{error}");
     }
 }

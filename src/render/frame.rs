@@ -8,12 +8,12 @@
 use std::{
     sync::{
         Mutex, MutexGuard, PoisonError,
-        atomic::{AtomicU64, Ordering},
+        atomic::{AtomicU64, AtomicUsize, Ordering},
     },
     time::{Duration, Instant},
 };
 
-use rayon::prelude::*;
+use bumpalo::Bump;
 
 use super::{
     Backend, Progress, Rendered, Settings,
@@ -21,8 +21,8 @@ use super::{
     part::{Part, PartTile},
     reference,
     shard::Shard,
-    statistics::Statistics,
-    wavefront,
+    statistics::{Stage, Statistics},
+    wavefront::Wavefront,
 };
 use crate::{
     compile::Scene,
@@ -149,14 +149,18 @@ impl Frame {
         let there = |cell: &Cell| pixels(cell) * lock(&cell.state).film.samples.len() as u64;
         let done = AtomicU64::new(self.cells.iter().map(there).sum());
         for end in passes(range.end - range.start) {
-            self.cells.par_iter().with_max_len(1).for_each(|cell| {
-                let until = range.start + end;
-                let visit = Visit { cell, frame: self, until, total, done: &done, watch };
-                match settings.backend {
-                    Backend::Packet => {
-                        wavefront::render(scene, integrator, settings.sort, &cell.tile, &visit);
+            let until = range.start + end;
+            let next = AtomicUsize::new(0);
+            // Each thread takes the next tile, and keeps its memory from tile to tile.
+            rayon::broadcast(|_| {
+                let arena = Bump::new();
+                let mut wavefront = Wavefront::new(&arena, scene, integrator, settings.sort);
+                while let Some(cell) = self.cells.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let visit = Visit { cell, frame: self, until, total, done: &done, watch };
+                    match settings.backend {
+                        Backend::Packet => wavefront.render(&cell.tile, &visit),
+                        Backend::Scalar => reference::render(scene, integrator, &cell.tile, &visit),
                     }
-                    Backend::Scalar => reference::render(scene, integrator, &cell.tile, &visit),
                 }
             });
         }
@@ -256,12 +260,14 @@ impl Visit<'_> {
     }
 
     /// Adds one sample of every pixel, and what it took.
-    pub(super) fn finish(&self, statistics: &Statistics, add: impl FnOnce(&mut TileFilm)) {
+    pub(super) fn finish(&self, mut statistics: Statistics, add: impl FnOnce(&mut TileFilm)) {
+        let start = Instant::now();
         let pixels = self.cell.tile.len() as u64;
         let mut state = lock(&self.cell.state);
         add(&mut state.film);
         state.film.finish_sample();
-        state.statistics.merge(statistics);
+        statistics.spend(Stage::Add, start);
+        state.statistics.merge(&statistics);
         state.statistics.samples += pixels;
         state.statistics.invalid_samples = state.film.invalid;
         let Tile { x, y, width, .. } = self.cell.tile;

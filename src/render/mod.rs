@@ -6,7 +6,7 @@
 mod ao;
 mod aov;
 mod camera_rays;
-mod columns;
+mod connections;
 mod departure;
 mod direct;
 mod frame;
@@ -18,6 +18,7 @@ pub mod part;
 mod path;
 mod ray_classes;
 mod reference;
+mod rows;
 mod shard;
 mod sort;
 mod statistics;
@@ -30,13 +31,16 @@ pub use frame::{Coverage, Frame, Plan, Watch, tile_count};
 pub use irradiance::Receiver;
 pub use ray_classes::{Query, RayClass, ray_classes};
 pub use shard::{Shard, ShardBy};
-pub use statistics::{LaneUse, Stages, Statistics};
+pub use statistics::{LaneUse, Profile, Statistics};
+
+use bumpalo::Bump;
 
 use crate::{bvh::Traversal, compile::Scene, picture::Picture, scene};
 use integrator::Integrator;
 use irradiance::Irradiance;
 use part::{Difference, Part, differ};
 use path::PathTracer;
+use wavefront::Wavefront;
 
 /// Which of the two pipelines renders. Their pictures are equal to the bit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -175,7 +179,10 @@ pub fn replay(scene: &Scene, settings: &Settings, pixel: (u32, u32), sample: u32
         fn run<I: Integrator>(self, integrator: &I) -> Self::Done {
             let Self(scene, settings, pixel, sample) = self;
             let values = match settings.backend {
-                Backend::Packet => wavefront::sample(scene, integrator, settings.sort, pixel, sample),
+                Backend::Packet => {
+                    let arena = Bump::new();
+                    Wavefront::new(&arena, scene, integrator, settings.sort).sample(pixel, sample)
+                }
                 Backend::Scalar => {
                     let (mut traversal, mut statistics) = (Traversal::new(()), Statistics::default());
                     reference::sample(scene, integrator, pixel, sample, &mut traversal, &mut statistics).0

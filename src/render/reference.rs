@@ -33,7 +33,7 @@ pub(super) fn render<I: Integrator>(scene: &Scene, integrator: &I, tile: &Tile, 
             self::sample(scene, integrator, place, sample, &mut traversal, &mut statistics)
         };
         let pixels: Vec<_> = (0..tile.len() as u32).map(pixel).collect();
-        visit.finish(&statistics, |film| {
+        visit.finish(statistics, |film| {
             for (pixel, (sums, weight)) in pixels.iter().enumerate() {
                 film.add(pixel, *weight, |c| sums[c]);
             }

@@ -1,6 +1,9 @@
 //! What a render took, counted while it ran.
 
-use std::{ops::AddAssign, time::Duration};
+use std::{
+    ops::AddAssign,
+    time::{Duration, Instant},
+};
 
 /// Lanes that did work, of the lanes that ran.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,24 +42,42 @@ impl AddAssign for LaneUse {
     }
 }
 
-/// Time by stage, summed over threads. The reference has no stages.
+/// What a thread that renders packets does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Stage {
+    Trace,
+    Sort,
+    Shade,
+    Add,
+}
+
+/// Where the time of a render by packets went, summed over threads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Stages {
-    /// Rays to the next surface.
+pub struct Profile {
+    /// Rays through the tree, nearest hits and shadows.
     pub trace: Duration,
-    /// Sorting, surfaces, materials and lights.
+    /// Which material each hit has, and sorting by it.
+    pub sort: Duration,
+    /// Camera rays, materials, lights and random numbers; reading paths and writing them.
     pub shade: Duration,
-    /// Rays to lights.
-    pub connect: Duration,
-    /// Adding what vertices said, and closing the ranks of the paths that go on.
+    /// What vertices have brought into the film, and paths that end taken out.
     pub add: Duration,
 }
 
-impl AddAssign for Stages {
+impl Profile {
+    /// The stages' shares of their sum, in the order of the fields; 0 if nothing ran.
+    pub fn shares(&self) -> [f64; 4] {
+        let stages = [self.trace, self.sort, self.shade, self.add].map(|stage| stage.as_secs_f64());
+        let total: f64 = stages.iter().sum();
+        stages.map(|stage| if total > 0.0 { stage / total } else { 0.0 })
+    }
+}
+
+impl AddAssign for Profile {
     fn add_assign(&mut self, other: Self) {
         self.trace += other.trace;
+        self.sort += other.sort;
         self.shade += other.shade;
-        self.connect += other.connect;
         self.add += other.add;
     }
 }
@@ -76,17 +97,30 @@ pub struct Statistics {
     pub trace_lanes: LaneUse,
     /// Lane use of shading.
     pub shade_lanes: LaneUse,
+    /// Stages of the packet pipeline.
+    pub profile: Profile,
     /// Samples with a NaN or infinite value, kept out of the film.
     pub invalid_samples: u64,
     /// Pixel (x, y) and sample of the first of them, in picture order.
     pub first_invalid: Option<(u32, u32, u32)>,
-    /// Where the time of the threads went.
-    pub stages: Stages,
     /// Wall time of rendering, without loading and building.
     pub time: Duration,
 }
 
 impl Statistics {
+    /// Counts the time since `start` to a stage; now.
+    pub(super) fn spend(&mut self, stage: Stage, start: Instant) -> Instant {
+        let now = Instant::now();
+        let spent = match stage {
+            Stage::Trace => &mut self.profile.trace,
+            Stage::Sort => &mut self.profile.sort,
+            Stage::Shade => &mut self.profile.shade,
+            Stage::Add => &mut self.profile.add,
+        };
+        *spent += now - start;
+        now
+    }
+
     /// Adds the counts of another part of the same picture.
     pub(super) fn merge(&mut self, other: &Self) {
         self.samples += other.samples;
@@ -95,7 +129,7 @@ impl Statistics {
         self.shadow_rays += other.shadow_rays;
         self.trace_lanes += other.trace_lanes;
         self.shade_lanes += other.shade_lanes;
-        self.stages += other.stages;
+        self.profile += other.profile;
         self.invalid_samples += other.invalid_samples;
         let in_picture_order = |&(x, y, sample): &(u32, u32, u32)| (y, x, sample);
         self.first_invalid =

@@ -9,8 +9,7 @@ use std::{
 use glam::{DAffine3, DVec3, Vec3};
 use packlight::load::{LoadOptions, load};
 use packlight::scene::{Geometry, Material, MaterialIndex, Mesh, SceneDescription, Shape};
-
-use crate::aim::{Random, Targets};
+use packlight::verify::aim::{Random, Targets};
 
 fn shape(geometry: Geometry, to_world: DAffine3) -> Shape {
     Shape {

@@ -100,7 +100,7 @@ impl Surfaces {
     fn barycentric<R: Real>(&self, (org, dir): (Vector3<R>, Vector3<R>), primitive: R::Bits) -> (R, R) {
         use crate::compile::primitives::Primitive;
         use crate::geometry::{RayLanes, Triangle, TriangleLanes};
-        let nothing = Triangle { v0: glam::Vec3::ZERO, e1: glam::Vec3::ZERO, e2: glam::Vec3::ZERO };
+        let nothing = Triangle::new(glam::Vec3::ZERO, glam::Vec3::ZERO, glam::Vec3::ZERO);
         let mut triangles = [nothing; 8];
         let mut there = 0;
         for (i, triangle) in triangles[..R::LANES].iter_mut().enumerate() {
@@ -110,7 +110,8 @@ impl Surfaces {
             }
         }
         let row = |of: fn(&Triangle) -> glam::Vec3| Vector3::from_fn(|i| of(&triangles[i]));
-        let lanes = TriangleLanes { v0: row(|t| t.v0), e1: row(|t| t.e1), e2: row(|t| t.e2) };
+        let edges = R::from_fn(|i| triangles[i].edges());
+        let lanes = TriangleLanes { v0: row(|t| t.v0), v1: row(|t| t.v1), v2: row(|t| t.v2), edges };
         let ray = RayLanes::new(org, dir, R::splat(f32::NEG_INFINITY), R::splat(f32::INFINITY));
         let there = R::Mask::from_bitmask(there);
         let (_, _, u, v) = lanes.intersect(&ray, there);

@@ -17,17 +17,28 @@ impl Kernel for Triangle {
     }
 
     fn lanes(surfaces: &[Self; 8], rays: &Rayx8, active: Mask8) -> Option<(Mask8, [f32x8; 3])> {
+        let row = |of: fn(&Self) -> Vec3| Vector3::from_fn(|i| of(&surfaces[i]));
         let triangles = TriangleLanes {
-            v0: Vector3::from_fn(|i| surfaces[i].v0),
-            e1: Vector3::from_fn(|i| surfaces[i].e1),
-            e2: Vector3::from_fn(|i| surfaces[i].e2),
+            v0: row(|triangle| triangle.v0),
+            v1: row(|triangle| triangle.v1),
+            v2: row(|triangle| triangle.v2),
+            edges: f32x8::from_fn(|i| surfaces[i].edges()),
         };
         let (hit, t, u, v) = triangles.intersect(rays, active);
+        // What sorts out the triangles far beside a ray sorts out nothing else.
+        let points = surfaces.iter().flat_map(|s| [s.v0, s.v1, s.v2]);
+        let reach = points.fold(Vec3::ZERO, |reach, point| reach.max(point.abs()));
+        let (sorted, quick_t, quick_u, quick_v) = triangles.intersect(&rays.within(reach), active);
+        assert_eq!(sorted.to_bitmask(), hit.to_bitmask(), "{surfaces:?} {rays:?}");
+        for (quick, all) in [(quick_t, t), (quick_u, u), (quick_v, v)] {
+            let bits = |x: f32x8| f32x8::select(hit, x, f32x8::zero()).to_array().map(f32::to_bits);
+            assert_eq!(bits(quick), bits(all));
+        }
         Some((hit, [t, u, v]))
     }
 }
 
-const UNIT: Triangle = Triangle { v0: Vec3::ZERO, e1: Vec3::X, e2: Vec3::Y };
+const UNIT: Triangle = Triangle { v0: Vec3::ZERO, v1: Vec3::X, v2: Vec3::Y };
 
 fn ray(org: [f32; 3], dir: [f32; 3]) -> Ray {
     Ray::new(org.into(), dir.into(), 0.0, f32::INFINITY)
@@ -76,19 +87,19 @@ fn seeds() -> Vec<(Ray, Triangle)> {
     ]);
     let mut triangles = vec![
         UNIT,
-        Triangle { v0: Vec3::ZERO, e1: Vec3::Y, e2: Vec3::X },
+        Triangle { v0: Vec3::ZERO, v1: Vec3::Y, v2: Vec3::X },
         // Not in an axis plane, and without area: a line, a point, nearly a line.
         Triangle::new(Vec3::new(0.1, 0.0, 0.2), Vec3::new(0.9, 0.1, -0.3), Vec3::new(0.2, 0.8, 0.4)),
-        Triangle { v0: Vec3::ZERO, e1: Vec3::X, e2: Vec3::X },
-        Triangle { v0: Vec3::new(0.25, 0.25, 0.0), e1: Vec3::ZERO, e2: Vec3::ZERO },
-        Triangle { v0: Vec3::ZERO, e1: Vec3::ONE, e2: Vec3::new(1.0, 1.0, 1.000_000_1) },
+        Triangle { v0: Vec3::ZERO, v1: Vec3::X, v2: Vec3::X },
+        Triangle::new(Vec3::new(0.25, 0.25, 0.0), Vec3::new(0.25, 0.25, 0.0), Vec3::new(0.25, 0.25, 0.0)),
+        Triangle { v0: Vec3::ZERO, v1: Vec3::ONE, v2: Vec3::new(1.0, 1.0, 1.000_000_1) },
     ];
     for scale in [1e-30, 1e-12, 1e12, 1e15] {
-        triangles.push(Triangle { v0: UNIT.v0, e1: UNIT.e1 * scale, e2: UNIT.e2 * scale });
+        triangles.push(Triangle { v0: UNIT.v0, v1: UNIT.v1 * scale, v2: UNIT.v2 * scale });
     }
     let mut seeds: Vec<_> = triangles.iter().flat_map(|&t| rays.iter().map(move |&ray| (ray, t))).collect();
     for scale in [1e-30, 1e-12, 1e12, 1e15] {
-        let triangle = Triangle { v0: UNIT.v0, e1: UNIT.e1 * scale, e2: UNIT.e2 * scale };
+        let triangle = Triangle { v0: UNIT.v0, v1: UNIT.v1 * scale, v2: UNIT.v2 * scale };
         seeds.extend(rays.iter().map(|ray| {
             (Ray::new(ray.org * scale, ray.dir, ray.t_near * scale, ray.t_far * scale), triangle)
         }));
@@ -105,7 +116,7 @@ fn lanes_equal_scalar_on_seeds() {
 fn lanes_equal_scalar_at_random() {
     at_random(200_000, |random| {
         let triangle = Triangle::new(random.vector(), random.vector(), random.vector());
-        let target = triangle.v0 + triangle.e1 * random.signed() + triangle.e2 * random.signed();
+        let target = triangle.v0 + triangle.e1() * random.signed() + triangle.e2() * random.signed();
         let org = random.vector() * 4.0;
         (Ray::new(org, target - org, 0.0, f32::INFINITY), triangle)
     });
@@ -136,7 +147,7 @@ fn the_middle_edges_and_vertices_are_hit_and_no_more() {
 fn small_and_large_triangles_are_hit() {
     for exponent in -11..=11 {
         let scale = 10f32.powi(exponent);
-        let triangle = Triangle { v0: UNIT.v0, e1: UNIT.e1 * scale, e2: UNIT.e2 * scale };
+        let triangle = Triangle { v0: UNIT.v0, v1: UNIT.v1 * scale, v2: UNIT.v2 * scale };
         let org = Vec3::new(0.25, 0.25, 2.0) * scale;
         let (t, u, v) = triangle.intersect(&Ray::new(org, -Vec3::Z, 0.0, f32::INFINITY)).expect("a hit");
         assert!((t / scale - 2.0).abs() < 1e-6 && (u - 0.25).abs() < 1e-6 && (v - 0.25).abs() < 1e-6);
@@ -146,10 +157,10 @@ fn small_and_large_triangles_are_hit() {
 #[test]
 fn triangles_without_area_and_parallel_rays_miss() {
     for triangle in [
-        Triangle { v0: Vec3::ZERO, e1: Vec3::ZERO, e2: Vec3::ZERO },
-        Triangle { v0: Vec3::ZERO, e1: Vec3::X, e2: Vec3::X },
-        Triangle { v0: Vec3::ZERO, e1: Vec3::X, e2: Vec3::X * -2.0 },
-        Triangle { v0: Vec3::ZERO, e1: Vec3::ZERO, e2: Vec3::Y },
+        Triangle { v0: Vec3::ZERO, v1: Vec3::ZERO, v2: Vec3::ZERO },
+        Triangle { v0: Vec3::ZERO, v1: Vec3::X, v2: Vec3::X },
+        Triangle { v0: Vec3::ZERO, v1: Vec3::X, v2: Vec3::X * -2.0 },
+        Triangle { v0: Vec3::ZERO, v1: Vec3::ZERO, v2: Vec3::Y },
     ] {
         for org in [Vec3::Z, Vec3::new(0.5, 0.0, 1.0), Vec3::new(0.0, -1.0, 0.0)] {
             assert_eq!(triangle.intersect(&Ray::new(org, -Vec3::Z, 0.0, f32::INFINITY)), None);
@@ -162,14 +173,14 @@ fn triangles_without_area_and_parallel_rays_miss() {
 #[test]
 fn nan_is_a_miss() {
     nan_misses(ray([0.25, 0.25, 1.0], [0.0, 0.0, -1.0]), UNIT);
-    let flat = Triangle { e1: Vec3::new(f32::NAN, 0.0, 0.0), ..UNIT };
+    let flat = Triangle { v1: Vec3::new(f32::NAN, 0.0, 0.0), ..UNIT };
     assert_eq!(flat.intersect(&ray([0.25, 0.25, 1.0], [0.0, 0.0, -1.0])), None);
 }
 
 /// Cramer's rule in double precision.
 fn exact(ray: &Ray, triangle: &Triangle) -> (f64, f64, f64, f64) {
     let [org, dir, v0, e1, e2] =
-        [ray.org, ray.dir, triangle.v0, triangle.e1, triangle.e2].map(Vec3::as_dvec3);
+        [ray.org, ray.dir, triangle.v0, triangle.e1(), triangle.e2()].map(Vec3::as_dvec3);
     let normal: DVec3 = e1.cross(e2);
     let det = -dir.dot(normal);
     let (s, c) = (org - v0, (org - v0).cross(dir));
@@ -182,13 +193,13 @@ fn hits_are_those_of_double_precision() {
     let (mut hits, mut misses) = (0, 0);
     for _ in 0..200_000 {
         let triangle = Triangle::new(random.vector(), random.vector(), random.vector());
-        let target = triangle.v0 + triangle.e1 * random.signed() + triangle.e2 * random.signed();
+        let target = triangle.v0 + triangle.e1() * random.signed() + triangle.e2() * random.signed();
         let org = random.vector() * 4.0;
         let ray = Ray::new(org, target - org, 0.0, f32::INFINITY);
         let (det, t, u, v) = exact(&ray, &triangle);
         // What rounding may do to Cramer's quotients.
         let [s, d, e1, e2] =
-            [org - triangle.v0, ray.dir, triangle.e1, triangle.e2].map(|v| f64::from(v.length()));
+            [org - triangle.v0, ray.dir, triangle.e1(), triangle.e2()].map(|v| f64::from(v.length()));
         let bound = 1e-6 * s / det.abs();
         let bounds = [bound * e1 * e2, bound * d * e2, bound * d * e1];
         let doubt = bounds[0].max(bounds[1]).max(bounds[2]);
@@ -202,7 +213,7 @@ fn hits_are_those_of_double_precision() {
             for ((got, want), bound) in [(got.0, t), (got.1, u), (got.2, v)].into_iter().zip(bounds) {
                 assert!((f64::from(got) - want).abs() < bound, "{got} {want} {ray:?} {triangle:?}");
             }
-            let on = triangle.v0 + triangle.e1 * got.1 + triangle.e2 * got.2;
+            let on = triangle.v0 + triangle.e1() * got.1 + triangle.e2() * got.2;
             let apart = f64::from((ray.org + ray.dir * got.0 - on).length());
             assert!(apart < bounds[0] * d + bounds[1] * e1 + bounds[2] * e2, "{ray:?} {triangle:?}");
             hits += 1;

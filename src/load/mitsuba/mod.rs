@@ -22,6 +22,7 @@ mod parameters;
 mod presets;
 mod properties;
 mod reader;
+mod references;
 mod sensor;
 mod shape;
 mod single;

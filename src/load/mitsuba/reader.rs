@@ -16,6 +16,7 @@ use super::{
     document::{Document, Entry, Node, Value},
     folders::Folders,
     parameters::Parameters,
+    references,
     source::{Source, Span},
     spectrum::Curve,
     transform,
@@ -48,6 +49,7 @@ pub(super) fn read(path: &Path, defines: &[(String, String)]) -> Result<Document
     reader.document.root = reader.read_object(&source, root, Class::Scene, 0)?.0;
     reader.parameters.finish(path)?;
     reader.document.resolve()?;
+    references::check(&reader.document)?;
     Ok(reader.document)
 }
 

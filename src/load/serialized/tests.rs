@@ -160,6 +160,8 @@ fn damaged_files_are_refused() {
     refused(stray, "mesh 0: a triangle uses vertex 3, but there are only 3");
     let empty = Source { counts: [3, 0], indices: Vec::new(), ..Source::default() };
     refused(empty, "mesh 0: it has no triangles");
+    let endless = Source { name: "x".repeat(5000).leak(), ..Source::default() };
+    refused(endless, "mesh 0: its name has more than 4096 bytes");
     let mut infinite = Source::default();
     infinite.numbers[4] = f64::INFINITY;
     refused(infinite, "mesh 0: number 4 of its positions is not finite");

@@ -1,13 +1,16 @@
 //! Rays that find faults: at corners and edges, along axes, in planes, from surfaces and from far away.
 
+use crate::compile::Scene;
+use crate::geometry::{PrimitiveId, Ray};
 use glam::Vec3;
-use packlight::geometry::Ray;
 
 /// A repeatable sequence.
-pub(crate) struct Random(u64);
+#[derive(Clone, Debug)]
+pub struct Random(u64);
 
 impl Random {
-    pub(crate) fn new(seed: u64) -> Self {
+    /// The sequence of a seed.
+    pub fn new(seed: u64) -> Self {
         Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
     }
 
@@ -16,26 +19,44 @@ impl Random {
         (self.0 >> 32) as u32
     }
 
-    pub(crate) fn below(&mut self, n: usize) -> usize {
+    /// A whole number less than n.
+    pub fn below(&mut self, n: usize) -> usize {
         ((u64::from(self.bits()) * n as u64) >> 32) as usize
     }
 
     /// In [0, 1).
-    pub(crate) fn unit(&mut self) -> f32 {
+    pub fn unit(&mut self) -> f32 {
         (self.bits() >> 8) as f32 / 16_777_216.0
     }
 
     /// In [−1, 1)³.
-    pub(crate) fn vector(&mut self) -> Vec3 {
+    pub fn vector(&mut self) -> Vec3 {
         Vec3::new(self.unit(), self.unit(), self.unit()) * 2.0 - 1.0
     }
 }
 
 /// Where to aim: triangles' corners, or three points of any other surface.
-pub(crate) type Targets = Vec<[Vec3; 3]>;
+pub type Targets = Vec<[Vec3; 3]>;
 
-/// `count` rays of each of many kinds.
-pub(crate) fn rays_at(targets: &Targets, count: usize, random: &mut Random) -> Vec<Ray> {
+/// What there is to aim at in a scene: the corners of its triangles, and three points where other surfaces
+/// touch their boxes.
+pub fn targets(scene: &Scene) -> Targets {
+    let target = |i: u32| {
+        scene.triangle(PrimitiveId(i)).unwrap_or_else(|| {
+            let bounds = scene.primitive_bounds(PrimitiveId(i));
+            let centre = bounds.centre();
+            [
+                Vec3 { x: bounds.max.x, ..centre },
+                Vec3 { y: bounds.max.y, ..centre },
+                Vec3 { z: bounds.max.z, ..centre },
+            ]
+        })
+    };
+    (0..scene.primitive_count()).map(target).collect()
+}
+
+/// `count` rays of each of some twenty kinds; the first are a camera's.
+pub fn rays_at(targets: &Targets, count: usize, random: &mut Random) -> Vec<Ray> {
     let somewhere = [[Vec3::ZERO, Vec3::X, Vec3::Y]];
     let targets: &[[Vec3; 3]] = if targets.is_empty() { &somewhere } else { targets };
     let points = || targets.iter().flatten();

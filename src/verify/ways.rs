@@ -1,0 +1,249 @@
+//! One question, asked in every way: the answers are the same to the bit.
+//!
+//! Single rays, which walk the tree with the scalar kernels, are what the others are compared with. A sample
+//! of rays is tested against every primitive, which is the truth that needs no tree.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::{Exhibit, Expected, RUN, reduce::smallest, scene_of};
+use crate::bvh::{Tracer, Traversal, Way};
+use crate::compile::Scene;
+use crate::geometry::{Hit, PrimitiveId, Ray32};
+use crate::render::Query;
+
+/// Rays that a thread takes at a time.
+const CHUNK: usize = 4096;
+/// Trials that making a fault smaller may take, for rays and for triangles.
+const TRIALS: usize = 400;
+
+/// How rays are answered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum By {
+    /// One after the other, by the scalar kernels.
+    Single,
+    /// As a stream.
+    Stream(Way),
+    /// Every primitive, without the tree.
+    BruteForce,
+}
+
+impl By {
+    /// All that are compared with single rays on every ray.
+    pub const WAYS: [Self; 4] = [
+        Self::Stream(Way::Chosen),
+        Self::Stream(Way::Tile),
+        Self::Stream(Way::Packet),
+        Self::Stream(Way::Wave),
+    ];
+
+    /// For people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Single => "single",
+            Self::Stream(Way::Chosen) => "chosen",
+            Self::Stream(Way::Tile) => "tile",
+            Self::Stream(Way::Packet) => "packet",
+            Self::Stream(Way::Wave) => "wave",
+            Self::BruteForce => "brute force",
+        }
+    }
+}
+
+/// The bits of t, u, v and the primitive; of an occlusion query 1 or 0, and zeros.
+pub type Answer = [u32; 4];
+
+/// Answers of a stream of rays. The crate's own is [`answers`]; a test's may be wrong on purpose.
+pub trait Answers: Fn(&Scene, By, Query, &[Ray32]) -> Vec<Answer> + Sync {}
+impl<F: Fn(&Scene, By, Query, &[Ray32]) -> Vec<Answer> + Sync> Answers for F {}
+
+/// What was compared.
+#[derive(Clone, Debug, Default)]
+pub struct Comparison {
+    /// Rays, each asked for its nearest hit and whether it is blocked.
+    pub rays: u64,
+    /// Rays that hit something.
+    pub hits: u64,
+    /// Rays that were tested against every primitive.
+    pub brute_force: u64,
+    /// Answers that differ from those of single rays.
+    pub mismatches: u64,
+    /// The first of them.
+    pub exhibit: Option<Exhibit>,
+}
+
+/// Asks a stream of rays one question.
+pub fn answers(scene: &Scene, by: By, query: Query, rays: &[Ray32]) -> Vec<Answer> {
+    let of_hit = |hit: Hit| [hit.t.to_bits(), hit.u.to_bits(), hit.v.to_bits(), hit.primitive.0];
+    let of_blocked = |blocked: bool| [u32::from(blocked), 0, 0, 0];
+    let mut traversal = Traversal::new(());
+    match (by, query) {
+        (By::Single, Query::Closest) => {
+            rays.iter().map(|ray| of_hit(scene.closest_hit(&ray.ray(), &mut traversal))).collect()
+        }
+        (By::Single, Query::Any) => {
+            rays.iter().map(|ray| of_blocked(scene.occluded(&ray.ray(), &mut traversal))).collect()
+        }
+        (By::Stream(way), Query::Closest) => {
+            let mut hits = vec![Hit::MISS; rays.len()];
+            scene.closest_hits_by(rays, &mut hits, way, &mut Tracer::new(()));
+            hits.into_iter().map(of_hit).collect()
+        }
+        (By::Stream(way), Query::Any) => {
+            let mut blocked = vec![0; rays.len()];
+            scene.occluded_stream_by(rays, &mut blocked, way, &mut Tracer::new(()));
+            blocked.into_iter().map(|blocked| of_blocked(blocked != 0)).collect()
+        }
+        (By::BruteForce, Query::Closest) => {
+            rays.iter().map(|ray| of_hit(scene.brute_force(&ray.ray()))).collect()
+        }
+        (By::BruteForce, Query::Any) => {
+            let blocked = |ray: &Ray32| scene.brute_force(&ray.ray()).primitive != PrimitiveId::NONE;
+            rays.iter().map(|ray| of_blocked(blocked(ray))).collect()
+        }
+    }
+}
+
+/// How many rays do not find what they should, by single rays.
+pub fn found(scene: &Scene, rays: &[Ray32], expected: Expected) -> u64 {
+    let blocked = answers(scene, By::Single, Query::Any, rays);
+    let should = u32::from(expected == Expected::Hit);
+    blocked.iter().map(|answer| u64::from(answer[0] != should)).sum()
+}
+
+/// Compares all ways on all rays, and brute force on as many as `brute_tests` tests allow.
+pub fn compare(scene: &Scene, rays: &[Ray32], brute_tests: u64, answers: &impl Answers) -> Comparison {
+    let summary = scene.summary();
+    let primitives = (summary.triangles + summary.quadrics + summary.placed).max(1);
+    let every = (rays.len() as u64 * primitives).div_ceil(brute_tests.max(1)).max(1) as usize;
+    let one = |(index, chunk): (usize, &[Ray32])| {
+        let first = index * CHUNK;
+        let sample: Vec<usize> = (0..chunk.len()).filter(|i| (first + i).is_multiple_of(every)).collect();
+        compare_chunk(scene, chunk, &sample, answers)
+    };
+    let add = |mut sum: Comparison, next: Comparison| {
+        sum.rays += next.rays;
+        sum.hits += next.hits;
+        sum.brute_force += next.brute_force;
+        sum.mismatches += next.mismatches;
+        sum.exhibit = sum.exhibit.or(next.exhibit);
+        sum
+    };
+    let each: Vec<Comparison> = rays.par_chunks(CHUNK).enumerate().map(one).collect();
+    each.into_iter().fold(Comparison::default(), add)
+}
+
+fn compare_chunk(scene: &Scene, rays: &[Ray32], sample: &[usize], answers: &impl Answers) -> Comparison {
+    let mut found =
+        Comparison { rays: rays.len() as u64, brute_force: sample.len() as u64, ..Comparison::default() };
+    let every: Vec<usize> = (0..rays.len()).collect();
+    for query in [Query::Closest, Query::Any] {
+        let want = answers(scene, By::Single, query, rays);
+        if query == Query::Any {
+            found.hits = want.iter().map(|answer| u64::from(answer[0])).sum();
+        }
+        for by in By::WAYS.into_iter().chain([By::BruteForce]) {
+            let which = if by == By::BruteForce { sample } else { &every };
+            let asked: Vec<Ray32> = which.iter().map(|&i| rays[i]).collect();
+            let got = answers(scene, by, query, &asked);
+            let differ = |&(place, &i): &(usize, &usize)| got[place] != want[i];
+            let mut wrong = which.iter().enumerate().filter(differ);
+            if let Some((place, _)) = wrong.next() {
+                found.mismatches += 1 + wrong.count() as u64;
+                let fault = Fault { by, query, answers };
+                found.exhibit.get_or_insert_with(|| fault.exhibit(scene, &asked, place));
+            }
+        }
+    }
+    found
+}
+
+/// A way that does not agree.
+struct Fault<'a, A> {
+    by: By,
+    query: Query,
+    answers: &'a A,
+}
+
+impl<A: Answers> Fault<'_, A> {
+    fn shows(&self, scene: &Scene, rays: &[Ray32]) -> bool {
+        let ask = |by| (self.answers)(scene, by, self.query, rays);
+        ask(self.by) != ask(By::Single)
+    }
+
+    /// As few rays as show it, then as few triangles. What rays before it have taught the tree may be part of
+    /// the fault: if the ray's own run does not show it, all rays up to it are kept.
+    fn exhibit(&self, scene: &Scene, rays: &[Ray32], place: usize) -> Exhibit {
+        let run = &rays[place / RUN * RUN..rays.len().min((place / RUN + 1) * RUN)];
+        let few = if self.shows(scene, run) { run } else { rays };
+        let few = smallest(few.to_vec(), TRIALS, |rays| self.shows(scene, rays));
+        let scene_shows =
+            |triangles: &[[Vec3; 3]]| scene_of(triangles).is_some_and(|scene| self.shows(&scene, &few));
+        let all = (0..scene.primitive_count()).filter_map(|i| scene.triangle(PrimitiveId(i)));
+        let all: Vec<_> = all.collect();
+        let triangles = if scene_shows(&all) { smallest(all, TRIALS, scene_shows) } else { Vec::new() };
+        let asked = match self.query {
+            Query::Closest => "the nearest hit",
+            Query::Any => "whether the ray is blocked",
+        };
+        let what = format!("{} and single rays differ about {asked}", self.by.name());
+        Exhibit { what, triangles, rays: few, expected: None }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::verify::aim::{Random, rays_at};
+
+    fn triangles() -> Vec<[Vec3; 3]> {
+        let mut random = Random::new(5);
+        let mut triangle = || {
+            let v = random.vector();
+            [v, v + random.vector() * 0.3, v + random.vector() * 0.3]
+        };
+        (0..300).map(|_| triangle()).collect()
+    }
+
+    fn rays() -> Vec<Ray32> {
+        let aimed = rays_at(&triangles(), 200, &mut Random::new(3));
+        aimed.iter().map(|ray| Ray32::new(ray.org, ray.dir, ray.t_near, ray.t_far)).collect()
+    }
+
+    #[test]
+    fn the_ways_agree() {
+        let scene = scene_of(&triangles()).unwrap();
+        let Comparison { rays, hits, brute_force, mismatches, exhibit } =
+            compare(&scene, &self::rays(), 300 * 500, &answers);
+        assert_eq!((mismatches, exhibit), (0, None));
+        assert!(
+            rays > 3800 && hits > 500 && (400..600).contains(&brute_force),
+            "{rays} {hits} {brute_force}"
+        );
+    }
+
+    /// A wave that does not see one triangle, wherever it is in the scene.
+    #[test]
+    fn a_fault_is_found_and_made_small() {
+        let (all, rays) = (triangles(), rays());
+        let scene = scene_of(&all).unwrap();
+        let blind = |scene: &Scene, by: By, query: Query, rays: &[Ray32]| -> Vec<Answer> {
+            let mut answers = answers(scene, by, query, rays);
+            if by == By::Stream(Way::Wave) && query == Query::Closest {
+                let lost = |id: u32| scene.triangle(PrimitiveId(id)) == Some(all[7]);
+                let miss = Hit::MISS;
+                let miss = [miss.t, miss.u, miss.v].map(f32::to_bits);
+                for answer in answers.iter_mut().filter(|a| a[3] != u32::MAX && lost(a[3])) {
+                    *answer = [miss[0], miss[1], miss[2], u32::MAX];
+                }
+            }
+            answers
+        };
+        let found = compare(&scene, &rays, 0, &blind);
+        assert!(found.mismatches > 0);
+        let exhibit = found.exhibit.expect("something to show");
+        assert_eq!(exhibit.triangles, [all[7]]);
+        assert_eq!(exhibit.rays.len(), 1);
+        assert!(exhibit.what.starts_with("wave"), "{}", exhibit.what);
+    }
+}

@@ -1,0 +1,263 @@
+//! Whatever a file holds, it becomes a scene or a clear refusal: no panic, no hang, no memory for what is only
+//! announced.
+
+#![allow(missing_docs)]
+
+use std::{
+    fs,
+    panic::catch_unwind,
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
+
+use packlight::compile::compile;
+use packlight::geometry::ray_file::RayFile;
+use packlight::load::{LoadOptions, load};
+use packlight::picture::{Encoding, decode};
+use packlight::scene::MerlTable;
+use packlight::verify::aim::Random;
+
+/// Longest that a file of these sizes may take.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// `PACKLIGHT_DAMAGES` for a run of a bench's size: 10000.
+fn damages() -> usize {
+    std::env::var("PACKLIGHT_DAMAGES").ok().and_then(|n| n.parse().ok()).unwrap_or(300)
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// An empty folder for a test.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("any_file").join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("writable");
+    folder
+}
+
+/// Reads a file as what its name says. `Ok` is whether it could be used.
+fn read(path: &Path) -> Result<bool, String> {
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+    let read = || -> Result<(), String> {
+        match extension.as_str() {
+            "png" | "jpg" | "hdr" | "exr" | "bmp" | "tga" | "webp" => {
+                decode(path, Encoding::Srgb).map(drop).map_err(|error| error.to_string())
+            }
+            "rays" => RayFile::decode(&fs::read(path).expect("readable"))
+                .map(drop)
+                .map_err(|error| format!("{name}: {error}")),
+            "binary" => MerlTable::decode(&fs::read(path).expect("readable"))
+                .map(drop)
+                .map_err(|error| format!("{name}: {error}")),
+            _ => {
+                let loaded = load(path, &LoadOptions::default()).map_err(|error| error.to_string())?;
+                compile(&loaded.description).map(drop).map_err(|error| format!("{name}: {error}"))
+            }
+        }
+    };
+    let began = Instant::now();
+    let outcome = catch_unwind(read).map_err(|_| format!("{}: a panic", path.display()))?;
+    if began.elapsed() > PATIENCE {
+        return Err(format!("{}: took {:?}", path.display(), began.elapsed()));
+    }
+    match outcome {
+        Ok(()) => Ok(true),
+        // A file that a scene names is told by its own name.
+        Err(words) if words.contains(": ") && words.len() > 10 => Ok(false),
+        Err(words) => Err(format!("{}: refused with `{words}`", path.display())),
+    }
+}
+
+fn files_below(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let mut files: Vec<PathBuf> =
+        entries.flat_map(|path| if path.is_dir() { files_below(&path) } else { vec![path] }).collect();
+    files.sort();
+    files
+}
+
+#[test]
+fn files_that_others_found_hard() {
+    let scenes = root().join("../shared/scenes");
+    let files: Vec<PathBuf> =
+        ["malformed", "awkward"].iter().flat_map(|name| files_below(&scenes.join(name))).collect();
+    if files.is_empty() {
+        println!("skipped: {} is not there", scenes.display());
+        return;
+    }
+    let outcomes: Vec<Result<bool, String>> = files.iter().map(|path| read(path)).collect();
+    let used = outcomes.iter().filter(|outcome| **outcome == Ok(true)).count();
+    let faults: Vec<&String> = outcomes.iter().filter_map(|outcome| outcome.as_ref().err()).collect();
+    println!("{} files, {used} of them used", files.len());
+    assert!(faults.is_empty(), "{faults:#?}");
+}
+
+/// A part is cut off, bytes are changed, or a part takes the place of another.
+fn damaged(good: &[u8], random: &mut Random) -> Vec<u8> {
+    let mut bytes = good.to_vec();
+    // Headers are short, and hold what matters.
+    let reach = [64, 512, bytes.len()][random.below(3)].min(bytes.len());
+    match random.below(4) {
+        0 => bytes.truncate(random.below(good.len())),
+        1 => bytes[random.below(reach)] ^= 1 << random.below(8),
+        2 => {
+            for _ in 0..1 + random.below(5) {
+                bytes[random.below(reach)] = random.below(256) as u8;
+            }
+        }
+        _ => {
+            let (from, to) = (random.below(good.len()), random.below(reach));
+            let part = good[from..(from + random.below(40)).min(good.len())].to_vec();
+            bytes.splice(to..(to + random.below(10)).min(good.len()), part);
+        }
+    }
+    bytes
+}
+
+/// Damages files in many ways, where the files that they name are.
+fn damage(name: &str, goods: &[PathBuf]) {
+    let folder = folder(name);
+    for beside in ["meshes", "textures"] {
+        fs::create_dir_all(folder.join(beside)).expect("writable");
+        for path in files_below(&root().join("scenes").join(beside)) {
+            fs::copy(&path, folder.join(beside).join(path.file_name().expect("a name"))).expect("writable");
+        }
+    }
+    let (mut random, mut used, mut faults) = (Random::new(goods.len() as u64), 0, Vec::new());
+    for good in goods.iter().filter(|path| !path.exists()) {
+        println!("skipped: {} is not there", good.display());
+    }
+    let goods: Vec<(&PathBuf, Vec<u8>)> = goods
+        .iter()
+        .filter(|path| path.exists())
+        .map(|path| (path, fs::read(path).expect("readable")))
+        .collect();
+    for i in 0..if goods.is_empty() { 0 } else { damages() } {
+        let (good, bytes) = &goods[i % goods.len()];
+        let path = folder.join("damaged").with_extension(good.extension().unwrap_or_default());
+        let bytes = damaged(bytes, &mut random);
+        fs::write(&path, &bytes).expect("writable");
+        match read(&path) {
+            Ok(is_used) => used += usize::from(is_used),
+            Err(fault) => {
+                let kept =
+                    folder.join(format!("fault-{i}")).with_extension(path.extension().expect("an extension"));
+                fs::write(&kept, &bytes).expect("writable");
+                faults.push(format!("{}: {fault}", kept.display()));
+            }
+        }
+    }
+    println!("{name}: {used} of {} damaged files were used", damages());
+    assert!(faults.is_empty(), "{faults:#?}");
+}
+
+fn of_scenes(names: &[&str]) -> Vec<PathBuf> {
+    names.iter().map(|name| root().join("scenes").join(name)).collect()
+}
+
+fn of_others(names: &[&str]) -> Vec<PathBuf> {
+    names.iter().map(|name| root().join("../shared/scenes").join(name)).collect()
+}
+
+#[test]
+fn damaged_scenes() {
+    damage("xml", &of_scenes(&["cornell.xml", "materials.xml", "instances.xml", "sky.xml", "spheres.xml"]));
+}
+
+#[test]
+fn damaged_obj() {
+    let mut goods = of_scenes(&["meshes/gem.obj"]);
+    goods.extend(of_others(&["malformed/regr_3429812.obj", "malformed/number_formats.obj"]));
+    damage("obj", &goods);
+}
+
+#[test]
+fn damaged_ply() {
+    let mut goods = of_others(&["malformed/cube_binary.ply", "awkward/degtri_sliding.ply"]);
+    let ascii = folder("seed").join("ascii.ply");
+    let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+                  element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+    fs::write(&ascii, format!("{header}0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n4 0 1 2 3\n")).expect("writable");
+    goods.push(ascii);
+    damage("ply", &goods);
+}
+
+#[test]
+fn damaged_pictures() {
+    let mut goods = of_scenes(&["textures/sky.hdr", "textures/tiles.png", "textures/bosses.png"]);
+    goods.extend(of_others(&[
+        "mitsuba/reference/tests/scenes/floating_sphere/refs/test_directional_ref_rgb.exr",
+    ]));
+    damage("pictures", &goods);
+}
+
+#[test]
+fn damaged_rays_and_tables() {
+    let folder = folder("rays_seed");
+    let (rays, table) = (folder.join("a.rays"), folder.join("a.binary"));
+    let ray = packlight::geometry::Ray32::new(glam::Vec3::ONE, glam::Vec3::Z, 0.0, 9.0);
+    fs::write(&rays, packlight::geometry::ray_file::encode(&[ray; 20])).expect("writable");
+    // A MERL file is 35 MB; its header is what a decoder believes.
+    let header: Vec<u8> = [90i32, 90, 180].iter().flat_map(|n| n.to_le_bytes()).collect();
+    fs::write(&table, [header, vec![0; 500]].concat()).expect("writable");
+    damage("rays", &[rays, table]);
+}
+
+/// Small files that stand for large ones: with little memory at hand, they are refused all the same.
+#[cfg(target_os = "linux")]
+#[test]
+fn what_is_only_announced_takes_no_memory() {
+    use std::process::Command;
+    let folder = folder("announced");
+    let write = |name: &str, bytes: &[u8]| fs::write(folder.join(name), bytes).expect("writable");
+    let ply = |format: &str, vertices: &str, list: &str, rest: &[u8]| {
+        let header = format!(
+            "ply\nformat {format} 1.0\nelement vertex {vertices}\nproperty float x\nproperty float y\n\
+             property float z\nelement face 1\nproperty list {list} int vertex_indices\nend_header\n"
+        );
+        [header.as_bytes(), rest].concat()
+    };
+    let endless = [[0u8; 36].as_slice(), &u32::MAX.to_le_bytes()].concat();
+    write("vertices.ply", &ply("binary_little_endian", "4000000000", "uchar", &[0; 36]));
+    write("corners.ply", &ply("binary_little_endian", "3", "uint", &endless));
+    write("words.ply", &ply("ascii", "3", "uint", b"0 0 0\n1 0 0\n0 1 0\n4000000000 0 1 2\n"));
+    let scene = |inside: &str| {
+        format!("<scene version=\"3.0.0\"><sensor type=\"perspective\"/>{inside}</scene>").into_bytes()
+    };
+    write("entities.xml", b"<!DOCTYPE a [<!ENTITY a \"ha\"><!ENTITY b \"&a;&a;\">]><scene>&b;</scene>");
+    write("deep.xml", "<bsdf type=\"mask\">".repeat(100_000).as_bytes());
+    write("closed.xml", &scene(&["<a>".repeat(50_000), "</a>".repeat(50_000)].concat()));
+    write("loop.xml", &scene("<include filename=\"loop.xml\"/>"));
+    write("twice.xml", &scene("<include filename=\"twin.xml\"/><include filename=\"twin.xml\"/>"));
+    write("twin.xml", &scene("<include filename=\"twice.xml\"/>"));
+    write("circle.xml", &scene("<bsdf type=\"mask\" id=\"a\"><ref id=\"a\"/></bsdf>"));
+    let blends: String = (1..40)
+        .map(|i| {
+            format!(
+                "<bsdf type=\"blendbsdf\" id=\"b{i}\"><float name=\"weight\" value=\".5\"/><ref id=\"b{0}\"/><ref id=\"b{0}\"/></bsdf>",
+                i - 1
+            )
+        })
+        .collect();
+    write("blends.xml", &scene(&format!("<bsdf type=\"diffuse\" id=\"b0\"/>{blends}")));
+    let film = "<sensor type=\"perspective\"><film type=\"hdrfilm\"><integer name=\"width\" value=\"2000000000\"/></film></sensor>";
+    write("film.xml", format!("<scene version=\"3.0.0\">{film}</scene>").as_bytes());
+    for path in files_below(&folder) {
+        // Address space, in KiB: what threads and allocators reserve is most of it.
+        let limited = format!("ulimit -v 1500000; exec \"$0\" info \"{}\"", path.display());
+        let output = Command::new("sh")
+            .args(["-c", &limited, env!("CARGO_BIN_EXE_packlight")])
+            .output()
+            .expect("a shell");
+        let words = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{}: {words}", path.display());
+        assert!(
+            words.contains(&*path.file_name().expect("a name").to_string_lossy()) || words.contains("twi"),
+            "{words}"
+        );
+        assert!(words.len() < 20_000, "{}: {} bytes of words", path.display(), words.len());
+    }
+}

@@ -1,0 +1,57 @@
+//! `packlight verify`, as it is called.
+
+#![allow(missing_docs)]
+
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output},
+};
+
+use packlight::geometry::{Ray32, ray_file::encode};
+
+fn packlight(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_packlight"))
+        .args(arguments)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("the program starts")
+}
+
+fn json(arguments: &[&str]) -> serde_json::Value {
+    let output = packlight(arguments);
+    assert!(output.status.success(), "{output:?}");
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+#[test]
+fn a_scene_is_verified() {
+    for scene in ["scenes/cornell.xml", "scenes/whitted.xml"] {
+        let found = json(&["verify", scene, "--most", "4000", "--json"]);
+        let classes = found["classes"].as_array().unwrap();
+        assert!(classes.iter().any(|class| class["class"] == "adversarial"), "{found}");
+        for class in classes {
+            assert_eq!(class["mismatches"], 0, "{found}");
+            assert!(class["rays"].as_u64().unwrap() > 0 && class["brute_force"].as_u64().unwrap() > 0);
+        }
+        assert_eq!((&found["leaks"]["leaks"], &found["self_hits"]["self_hits"]), (&0.into(), &0.into()));
+        assert!(found["leaks"]["rays"].as_u64().unwrap() > 100, "{found}");
+        assert!(found["failure"].is_null());
+    }
+}
+
+#[test]
+fn rays_of_a_file_are_held_to_what_they_should_find() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("verify");
+    fs::create_dir_all(&folder).unwrap();
+    let (mesh, rays) = (folder.join("one.obj"), folder.join("one.rays"));
+    fs::write(&mesh, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let ray = Ray32::new([0.2, 0.2, 1.0].into(), [0.0, 0.0, -1.0].into(), 0.0, f32::INFINITY);
+    fs::write(&rays, encode(&[ray])).unwrap();
+    let (mesh, rays) = (mesh.to_str().unwrap(), rays.to_str().unwrap());
+    assert_eq!(json(&["verify", mesh, "--rays", rays, "--expect", "hit", "--json"])["unexpected"], 0);
+    let output = packlight(&["verify", mesh, "--rays", rays, "--expect", "miss"]);
+    assert_eq!(output.status.code(), Some(1));
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(told.contains("1 ray that does not find what it should"), "{told}");
+}
