@@ -78,6 +78,12 @@ impl Child {
         self.0 & (Self::LEAF - 1) >> 3
     }
 
+    /// The first slot of a leaf and how many there are.
+    #[inline]
+    pub(super) fn slots(self) -> (u32, u32) {
+        (self.slot(), (self.0 >> 28 & 7) + 1)
+    }
+
     #[inline]
     pub(super) fn word(self) -> u32 {
         self.0

@@ -22,7 +22,8 @@ impl Bvh {
         traversal: &mut Traversal<T>,
     ) {
         if let Some(root) = self.nodes.first() {
-            self.intersect_packet_from::<ANY, L, T>(root, leaves, (ray, active), hit, traversal);
+            let ray = ray.within(self.reach());
+            self.intersect_packet_from::<ANY, L, T>(root, leaves, (&ray, active), hit, traversal);
         }
     }
 

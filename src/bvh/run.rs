@@ -48,14 +48,14 @@ impl Run {
         self.blocked.iter().enumerate().map(bits).sum()
     }
 
-    fn load<S: Stream>(&mut self, stream: &S, first: usize) {
+    fn load<S: Stream>(&mut self, stream: &S, first: usize, reach: glam::Vec3) {
         (self.first, self.len) = (first, RUN.min(stream.len() - first));
         for packet in 0..PACKETS {
             self.active[packet] = Mask8::splat(false);
             self.blocked[packet] = Mask8::splat(false);
             if packet * LANES < self.len {
                 let (rays, active) = stream.packet(first + packet * LANES);
-                (self.rays[packet], self.active[packet]) = (rays, active);
+                (self.rays[packet], self.active[packet]) = (rays.within(reach), active);
             }
         }
     }
@@ -168,12 +168,13 @@ impl Runs {
     /// The way that the next run goes; `None` at the end of the stream.
     pub(super) fn peek<const ANY: bool, L: Leaves, S: Stream, T: Tally>(
         &mut self,
+        bvh: &Bvh,
         leaves: &L,
         stream: &S,
         tally: &mut T,
     ) -> Option<Way> {
         if self.waiting.is_none() && self.next < stream.len() {
-            self.run.load(stream, self.next);
+            self.run.load(stream, self.next, bvh.reach());
             self.next += self.run.len;
             if ANY {
                 self.occluder.block(&mut self.run, leaves, tally);

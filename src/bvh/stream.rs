@@ -74,7 +74,7 @@ impl Bvh {
         runs.start(way, self.is_far());
         // Leaves are those of one tree, and a tracer may go from one to the next.
         traversal.blocker = Child::ABSENT;
-        while let Some(way) = runs.peek::<ANY, L, S, T>(leaves, stream, &mut traversal.tally) {
+        while let Some(way) = runs.peek::<ANY, L, S, T>(self, leaves, stream, &mut traversal.tally) {
             match way {
                 // Runs that follow each other are one wave, which is filled and drained once.
                 Way::Wave => {

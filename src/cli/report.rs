@@ -38,6 +38,7 @@ pub(super) struct Report {
     rays: Rays,
     mrays_per_second: f64,
     msamples_per_second: f64,
+    profile: Profile,
     lane_use: LaneUse,
     invalid_samples: u64,
     first_invalid: Option<Sample>,
@@ -52,6 +53,15 @@ struct Rays {
     camera: u64,
     bounce: u64,
     shadow: u64,
+}
+
+/// Shares of the threads' time in [0, 1], 0 where one ray goes at a time.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Profile {
+    trace: f64,
+    sort: f64,
+    shade: f64,
+    add: f64,
 }
 
 /// In [0, 1].
@@ -87,6 +97,7 @@ impl From<Sources<'_>> for Report {
     fn from(from: Sources<'_>) -> Self {
         let Sources { description, summary, statistics, .. } = from;
         let rays = statistics.camera_rays + statistics.bounce_rays + statistics.shadow_rays;
+        let [trace, sort, shade, add] = statistics.profile.shares();
         Self {
             scene: from.scene,
             output: from.output,
@@ -115,6 +126,7 @@ impl From<Sources<'_>> for Report {
             },
             mrays_per_second: mega_per_second(rays, statistics.time),
             msamples_per_second: mega_per_second(statistics.samples, statistics.time),
+            profile: Profile { trace, sort, shade, add },
             lane_use: LaneUse {
                 trace: statistics.trace_lanes.ratio(),
                 shade: statistics.shade_lanes.ratio(),
@@ -183,15 +195,21 @@ impl fmt::Display for Report {
             "  speed    {:.2} Mrays/s, {:.2} Msamples/s",
             self.mrays_per_second, self.msamples_per_second
         )?;
-        let LaneUse { trace, shade } = self.lane_use;
         match self.backend {
-            "packet" => writeln!(
-                f,
-                "  lanes    {:.1} % at work in trace, {:.1} % in shade; {}",
-                100.0 * trace,
-                100.0 * shade,
-                self.lanes
-            )?,
+            "packet" => {
+                let Profile { trace, sort, shade, add } = self.profile;
+                let [trace, sort, shade, add] = [trace, sort, shade, add].map(|share| 100.0 * share);
+                writeln!(
+                    f,
+                    "  profile  trace {trace:.1} %, sort {sort:.1} %, shade {shade:.1} %, add {add:.1} %"
+                )?;
+                let [trace, shade] = [self.lane_use.trace, self.lane_use.shade].map(|used| 100.0 * used);
+                writeln!(
+                    f,
+                    "  lanes    {trace:.1} % at work in trace, {shade:.1} % in shade; {}",
+                    self.lanes
+                )?;
+            }
             _ => writeln!(f, "  lanes    one ray at a time")?,
         }
         if let Some(bytes) = self.peak_memory_bytes {
@@ -229,12 +247,19 @@ mod tests {
             bounce_rays: 2_000_000,
             shadow_rays: 3_000_000,
             trace_lanes: render::LaneUse { active: 6, total: 8 },
+            profile: render::Profile {
+                trace: Duration::from_secs(3),
+                shade: Duration::from_secs(1),
+                ..render::Profile::default()
+            },
             time: Duration::from_secs(2),
             ..Statistics::default()
         });
         assert_eq!((report.mrays_per_second, report.msamples_per_second), (3.0, 0.5));
         let text = report.to_string();
-        for part in ["1,234 triangles", "1 light\n", "3.00 Mrays/s", "75.0 % at work", "2 threads"] {
+        for part in
+            ["1,234 triangles", "1 light\n", "3.00 Mrays/s", "trace 75.0 %", "75.0 % at work", "2 threads"]
+        {
             assert!(text.contains(part), "{part} is not in\n{text}");
         }
     }

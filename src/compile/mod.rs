@@ -24,7 +24,7 @@ use crate::bvh::{Bvh, Child, Quality, Reference};
 use crate::camera::Camera;
 use crate::film::Filter;
 use crate::geometry::Aabb;
-use crate::light::{Light, LightChoice, LightId};
+use crate::light::{Light, LightChoice, LightId, Sight};
 use crate::material::MaterialTable;
 use crate::scene::{Film, Integrator, Projection, Sampler, SceneDescription, Sensor};
 use crate::texture::TextureTable;
@@ -45,6 +45,8 @@ pub struct Scene {
     pub(crate) light_choice: LightChoice,
     /// Lights that rays which leave the scene see.
     pub(crate) environments: Vec<LightId>,
+    /// Where rays may find light.
+    pub(crate) sight: Sight,
     /// Size of the bounds of everything that can be hit.
     extent: Vec3,
     pub(crate) camera: Camera,
@@ -174,6 +176,7 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
     primitives.instances.add_to(&mut summary, upper as f64 / count.max(1) as f64);
     let environments = (0..lights.len()).filter(|&i| lights[i].is_environment());
     let environments = environments.map(|i| LightId(i as u32)).collect();
+    let sight = Sight::new(&lights);
     Ok(Scene {
         primitives,
         bvh,
@@ -183,6 +186,7 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
         lights,
         light_choice,
         environments,
+        sight,
         extent,
         camera: camera(&description.sensor),
         filter: filter::compile(description.sensor.film.filter),

@@ -1,14 +1,17 @@
 //! What can be hit, in leaf order: eight triangles or spheres to a block, in columns; what is rare, one by
 //! one.
 
+mod triangle_block;
+
 use rayon::prelude::*;
 
+use self::triangle_block::{TriangleBlock, row, set};
 use super::instances::Instances;
 use crate::bvh::{BLOCK, Hitx8, Leaves};
 use crate::geometry::{
-    Canonical, Hit, Pencils, PrimitiveId, Ray, RayLanes, Rayx8, Sphere, SphereLanes, Triangle, TriangleLanes,
+    AspectColumns, Canonical, Hit, Pencils, PrimitiveId, Ray, RayLanes, Rayx8, Sphere, SphereLanes, Triangle,
 };
-use crate::simd::{Bits, Mask, Mask8, Real, Vector3, f32x8, u32x8, vector3};
+use crate::simd::{Bits, Mask, Mask8, Real, Vector3, f32x8, u32x8};
 
 /// Classes of references, in the order of their blocks.
 pub(super) const TRIANGLE: u8 = 0;
@@ -23,16 +26,6 @@ pub(super) enum Primitive {
     Sphere(Sphere),
     Canonical(Canonical),
     Instance,
-}
-
-/// Eight triangles: 320 bytes, all that a test reads. Padding is nowhere: NaN is never hit.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-struct TriangleBlock {
-    v0: [[f32; 8]; 3],
-    v1: [[f32; 8]; 3],
-    v2: [[f32; 8]; 3],
-    edges: [f32; 8],
 }
 
 /// Eight spheres. Padding is never asked for: leaves have counts.
@@ -53,60 +46,6 @@ pub struct Primitives {
     /// One a slot; `None` is padding.
     canonicals: Vec<Option<(Canonical, u32)>>,
     pub(super) instances: Instances,
-}
-
-fn set(rows: &mut [[f32; 8]; 3], lane: usize, v: glam::Vec3) {
-    for axis in 0..3 {
-        rows[axis][lane] = v[axis];
-    }
-}
-
-fn row(rows: &[[f32; 8]; 3], lane: usize) -> glam::Vec3 {
-    glam::vec3(rows[0][lane], rows[1][lane], rows[2][lane])
-}
-
-impl TriangleBlock {
-    const EMPTY: Self = {
-        let nowhere = [[f32::NAN; 8]; 3];
-        Self { v0: nowhere, v1: nowhere, v2: nowhere, edges: [f32::NAN; 8] }
-    };
-
-    fn new(ids: &[u32], primitives: impl Fn(u32) -> Primitive) -> Self {
-        let mut block = Self::EMPTY;
-        for (lane, &id) in ids.iter().enumerate().filter(|&(_, &id)| id != u32::MAX) {
-            if let Primitive::Triangle(triangle) = primitives(id) {
-                set(&mut block.v0, lane, triangle.v0);
-                set(&mut block.v1, lane, triangle.v1);
-                set(&mut block.v2, lane, triangle.v2);
-                block.edges[lane] = triangle.edges();
-            }
-        }
-        block
-    }
-
-    #[inline]
-    fn lanes(&self) -> TriangleLanes<f32x8> {
-        let rows = |rows: &[[f32; 8]; 3]| vector3(rows[0].into(), rows[1].into(), rows[2].into());
-        let (v0, v1, v2) = (rows(&self.v0), rows(&self.v1), rows(&self.v2));
-        TriangleLanes { v0, v1, v2, edges: self.edges.into() }
-    }
-
-    /// A packet against the triangle in a lane.
-    #[inline]
-    fn intersect<const ANY: bool>(&self, lane: usize, id: &u32, ray: &Rayx8, active: Mask8, hit: &mut Hitx8) {
-        let splat = |rows| Vector3::splat(row(rows, lane));
-        let (v0, v1, v2) = (splat(&self.v0), splat(&self.v1), splat(&self.v2));
-        let triangle = TriangleLanes { v0, v1, v2, edges: f32x8::splat(self.edges[lane]) };
-        let (found, t, u, v) = triangle.intersect(&RayLanes { t_far: hit.t, ..*ray }, active);
-        if found.any() {
-            accept::<ANY>(hit, found, (t, u, v), || u32x8::splat(*id));
-        }
-    }
-
-    #[inline]
-    fn triangle(&self, lane: usize) -> Triangle {
-        Triangle { v0: row(&self.v0, lane), v1: row(&self.v1, lane), v2: row(&self.v2, lane) }
-    }
 }
 
 impl SphereBlock {
@@ -278,7 +217,9 @@ impl Leaves for Primitives {
             match class {
                 TRIANGLE => {
                     let id = &self.triangle_ids[block * BLOCK + lane];
-                    self.triangles[block].intersect::<ANY>(lane, id, ray, active, hit);
+                    let block = &self.triangles[block];
+                    let aspect = block.splat(lane).aspect(ray.org);
+                    block.intersect::<ANY>((lane, id), &aspect, ray, active, hit);
                 }
                 SPHERE => {
                     let block = &self.spheres[block];
@@ -315,7 +256,9 @@ impl Leaves for Primitives {
             }
             return mask.count_ones() * count;
         };
-        let planes = block.lanes().edge_planes(pencils.org());
+        // From the one origin of all, for all triangles of the block at once.
+        let aspects = block.lanes().aspect(Vector3::splat(pencils.org()));
+        let (planes, aspects) = (aspects.edge_planes(), AspectColumns::new(&aspects));
         let (lane, mut tests) = (first as usize % BLOCK, 0);
         for lane in lane..lane + count as usize {
             let id = &self.triangle_ids[first as usize / BLOCK * BLOCK + lane];
@@ -324,7 +267,13 @@ impl Leaves for Primitives {
             while left != 0 {
                 let packet = left.trailing_zeros() as usize % 8;
                 left &= left - 1;
-                block.intersect::<ANY>(lane, id, &packets[packet], every, &mut hits[packet]);
+                block.intersect::<ANY>(
+                    (lane, id),
+                    &aspects.splat(lane),
+                    &packets[packet],
+                    every,
+                    &mut hits[packet],
+                );
             }
         }
         tests
@@ -335,7 +284,7 @@ impl Leaves for Primitives {
         if (first as usize) < self.triangles.len() * BLOCK { 1 } else { count }
     }
 
-    #[inline]
+    #[inline(always)]
     fn intersect_block<const ANY: bool>(
         &self,
         first: u32,

@@ -102,7 +102,7 @@ impl Shapes {
         let light = match shape.radiance {
             Some(radiance) if self.references.len() > references => {
                 let extent = emitter_extent(&emitting);
-                lights.push(Light::Area(AreaLight { radiance, shape: emitting, side, extent }));
+                lights.push(Light::Area(AreaLight { radiance, shape: emitting, side, extent, bounds }));
                 LightId(lights.len() as u32 - 1)
             }
             _ => LightId::NONE,

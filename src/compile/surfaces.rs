@@ -150,21 +150,90 @@ impl Surfaces {
         primitive: R::Bits,
         oriented: bool,
     ) -> Surface<R> {
-        let rows: [&ShapeRow; 8] =
-            std::array::from_fn(|i| self.shape(primitive.lane(if i < R::LANES { i } else { 0 })));
+        let shape = |i: usize| self.shape_of[primitive.lane(i) as usize];
+        let first = shape(0);
+        let (part, side, light) = if (1..R::LANES).all(|i| shape(i) == first) {
+            let row = &self.shapes[first as usize];
+            let part = self.of_one_shape(row, (org, dir), (t, u, v), primitive);
+            (part, R::splat(row.side), R::Bits::splat(row.light.0))
+        } else {
+            let rows: [&ShapeRow; 8] =
+                std::array::from_fn(|i| &self.shapes[shape(if i < R::LANES { i } else { 0 }) as usize]);
+            let part = self.of_several_shapes(&rows, (org, dir), (t, u, v), primitive);
+            (part, R::from_fn(|i| rows[i].side), R::Bits::from_fn(|i| rows[i].light.0))
+        };
+        let (n_g, n_s) = (part.n_g.scale(side), part.n_s.scale(side));
+        let (mut frame, mut moves) = (Frame::around(n_s), [Vector3::zero(); 2]);
+        if oriented {
+            let mut lanes = [[Vec3::ZERO; 2]; 8];
+            for (i, lane) in lanes[..R::LANES].iter_mut().enumerate() {
+                *lane = self.partials(primitive.lane(i), part.position.lane(i), part.n_g.lane(i));
+            }
+            moves = [0, 1].map(|k| Vector3::from_fn(|i| lanes[i][k]));
+            frame = partials::frame_along(n_s, moves[0]);
+        }
+        Surface {
+            position: part.position,
+            extent: part.extent,
+            n_g,
+            frame,
+            partials: moves,
+            uv: part.uv,
+            light,
+        }
+    }
+
+    #[inline]
+    fn of_one_shape<R: Real>(
+        &self,
+        row: &ShapeRow,
+        (org, dir): (Vector3<R>, Vector3<R>),
+        (t, u, v): (R, R, R),
+        primitive: R::Bits,
+    ) -> Part<R> {
+        let place = row.first_in_class as usize;
+        match row.class {
+            Class::Triangles { uv, normal } => {
+                let all = |this| if this == Interpolate::Vertices { (1u32 << R::LANES) - 1 } else { 0 };
+                let index = |i: usize| (primitive.lane(i) - row.first) as usize + place;
+                self.triangles(index, (all(normal), all(uv)), (u, v))
+            }
+            Class::Sphere => {
+                let SphereRow { sphere, to_local } = &self.spheres[place];
+                let (center, radius) = (Vector3::splat(sphere.center), R::splat(sphere.radius));
+                on_sphere((center, radius), to_local.map(Vector3::splat), org + dir.scale(t))
+            }
+            Class::Canonical => self.canonicals[place].at(org + dir.scale(t)),
+        }
+    }
+
+    fn of_several_shapes<R: Real>(
+        &self,
+        rows: &[&ShapeRow; 8],
+        (org, dir): (Vector3<R>, Vector3<R>),
+        (t, u, v): (R, R, R),
+        primitive: R::Bits,
+    ) -> Part<R> {
         let index = |i: usize| (primitive.lane(i) - rows[i].first + rows[i].first_in_class) as usize;
-        let which =
-            |f: fn(&Class) -> bool| (0..R::LANES).fold(0, |bits, i| bits | u32::from(f(&rows[i].class)) << i);
-        let all = (1u32 << R::LANES) - 1;
-        let spheres = which(|class| matches!(class, Class::Sphere));
-        let canonicals = which(|class| matches!(class, Class::Canonical));
-        let triangles = all & !spheres & !canonicals;
+        let (mut triangles, mut spheres, mut canonicals) = (0u32, 0u32, 0u32);
+        let (mut smooth, mut mapped) = (0, 0);
+        for (i, row) in rows[..R::LANES].iter().enumerate() {
+            match row.class {
+                Class::Triangles { uv, normal } => {
+                    triangles |= 1 << i;
+                    smooth |= u32::from(normal == Interpolate::Vertices) << i;
+                    mapped |= u32::from(uv == Interpolate::Vertices) << i;
+                }
+                Class::Sphere => spheres |= 1 << i,
+                Class::Canonical => canonicals |= 1 << i,
+            }
+        }
 
         let mut part = if triangles != 0 {
             // Lanes of other classes read the first triangle there is, and are replaced below.
             let lane = triangles.trailing_zeros() as usize;
-            let safe = |i: usize| if triangles >> i & 1 != 0 { i } else { lane };
-            self.triangles(&rows, |i| index(safe(i)), safe, u, v)
+            let safe = |i: usize| index(if triangles >> i & 1 != 0 { i } else { lane });
+            self.triangles(safe, (smooth, mapped), (u, v))
         } else {
             Part {
                 position: Vector3::zero(),
@@ -185,8 +254,11 @@ impl Surfaces {
         let point = org + dir.scale(t);
         if spheres != 0 {
             let lane = spheres.trailing_zeros() as usize;
-            let safe = |i: usize| index(if spheres >> i & 1 != 0 { i } else { lane });
-            replace(spheres, self.spheres(safe, point));
+            let row = |i: usize| &self.spheres[index(if spheres >> i & 1 != 0 { i } else { lane })];
+            let center = Vector3::<R>::from_fn(|i| row(i).sphere.center);
+            let radius = R::from_fn(|i| row(i).sphere.radius);
+            let axes = [0, 1, 2].map(|k| Vector3::<R>::from_fn(|i| row(i).to_local[k]));
+            replace(spheres, on_sphere((center, radius), axes, point));
         }
         let mut rest = canonicals;
         while rest != 0 {
@@ -196,86 +268,57 @@ impl Surfaces {
             rest &= !same;
             replace(same, self.canonicals[index(lane)].at(point));
         }
-        let side = R::from_fn(|i| rows[i].side);
-        let (n_g, n_s) = (part.n_g.scale(side), part.n_s.scale(side));
-        let (mut frame, mut moves) = (Frame::around(n_s), [Vector3::zero(); 2]);
-        if oriented {
-            let mut lanes = [[Vec3::ZERO; 2]; 8];
-            for (i, lane) in lanes[..R::LANES].iter_mut().enumerate() {
-                *lane = self.partials(primitive.lane(i), part.position.lane(i), part.n_g.lane(i));
-            }
-            moves = [0, 1].map(|k| Vector3::from_fn(|i| lanes[i][k]));
-            frame = partials::frame_along(n_s, moves[0]);
-        }
-        Surface {
-            position: part.position,
-            extent: part.extent,
-            n_g,
-            frame,
-            partials: moves,
-            uv: part.uv,
-            light: R::Bits::from_fn(|i| rows[i].light.0),
-        }
+        part
     }
 
+    /// Triangles whose normals and uv, in these lanes, are their vertices'.
     #[inline]
     fn triangles<R: Real>(
         &self,
-        rows: &[&ShapeRow; 8],
         index: impl Fn(usize) -> usize,
-        safe: impl Fn(usize) -> usize,
-        u: R,
-        v: R,
+        (smooth, mapped): (u32, u32),
+        (u, v): (R, R),
     ) -> Part<R> {
-        let mut corners = [[&self.vertices[0]; 3]; 8];
-        let mut smooth = 0;
-        let mut mapped = 0;
+        let mut corners = [[0; 3]; 8];
         for (i, corner) in corners[..R::LANES].iter_mut().enumerate() {
-            *corner = self.triangles[index(i)].map(|vertex| &self.vertices[vertex as usize]);
-            if let Class::Triangles { uv, normal } = rows[safe(i)].class {
-                smooth |= u32::from(normal == Interpolate::Vertices) << i;
-                mapped |= u32::from(uv == Interpolate::Vertices) << i;
-            }
+            *corner = self.triangles[index(i)];
         }
-        let position = |k: usize| Vector3::<R>::from_fn(|i| corners[i][k].position);
-        let p0 = position(0);
-        let (e1, e2) = (position(1) - p0, position(2) - p0);
+        let [p0, p1, p2] = [0, 1, 2].map(|k| R::from_rows(|i| self.vertices[corners[i][k] as usize].row()));
+        let position = |[x, y, z, ..]: [R; 8]| vector3(x, y, z);
+        let (v0, e1, e2) = (position(p0), position(p1) - position(p0), position(p2) - position(p0));
         let n_g = e1.cross(e2).normalize_or(vector3(R::zero(), R::zero(), R::one()));
+        let w = R::one() - u - v;
         let mut n_s = n_g;
         if smooth != 0 {
-            let normal = |k: usize| Vector3::<R>::from_fn(|i| corners[i][k].normal);
-            let n = normal(0).scale(R::one() - u - v) + normal(1).scale(u) + normal(2).scale(v);
+            let normal = |p: [R; 8]| vector3(p[4], p[5], p[6]);
+            let n = normal(p0).scale(w) + normal(p1).scale(u) + normal(p2).scale(v);
             n_s = Vector3::select(R::Mask::from_bitmask(smooth), n.normalize_or(n_g), n_g);
         }
         let mut uv = (u, v);
         if mapped != 0 {
-            let along = |f: fn(&Vertex) -> f32| {
-                let c = |k: usize| R::from_fn(|i| f(corners[i][k]));
-                c(0) * (R::one() - u - v) + c(1) * u + c(2) * v
-            };
+            let along = |k: usize| p0[k] * w + p1[k] * u + p2[k] * v;
             let mapped = R::Mask::from_bitmask(mapped);
-            uv = (R::select(mapped, along(|c| c.u), u), R::select(mapped, along(|c| c.v), v));
+            uv = (R::select(mapped, along(3), u), R::select(mapped, along(7), v));
         }
-        Part { position: p0 + (e1.scale(u) + e2.scale(v)), extent: e1.abs() + e2.abs(), n_g, n_s, uv }
+        Part { position: v0 + (e1.scale(u) + e2.scale(v)), extent: e1.abs() + e2.abs(), n_g, n_s, uv }
     }
+}
 
-    #[inline]
-    fn spheres<R: Real>(&self, index: impl Fn(usize) -> usize, point: Vector3<R>) -> Part<R> {
-        let rows: [&SphereRow; 8] =
-            std::array::from_fn(|i| &self.spheres[index(if i < R::LANES { i } else { 0 })]);
-        let center = Vector3::<R>::from_fn(|i| rows[i].sphere.center);
-        let radius = R::from_fn(|i| rows[i].sphere.radius);
-        // The point is put back onto the sphere: its error no longer grows with t.
-        let n = (point - center).normalize_or(vector3(R::zero(), R::zero(), R::one()));
-        let axis = |k: usize| Vector3::<R>::from_fn(|i| rows[i].to_local[k]).dot(n);
-        let (x, y, z) = (axis(0), axis(1), axis(2));
-        Part {
-            position: center + n.scale(radius),
-            extent: vector3(radius, radius, radius),
-            n_g: n,
-            n_s: n,
-            uv: (turns(y, x), acos(z) * R::splat(INV_PI)),
-        }
+/// Spheres, with their poles; the point is put back onto them, so that its error no longer grows with t.
+#[inline]
+fn on_sphere<R: Real>(
+    (center, radius): (Vector3<R>, R),
+    to_local: [Vector3<R>; 3],
+    point: Vector3<R>,
+) -> Part<R> {
+    let n = (point - center).normalize_or(vector3(R::zero(), R::zero(), R::one()));
+    let [x, y, z] = to_local.map(|axis| axis.dot(n));
+    Part {
+        position: center + n.scale(radius),
+        extent: vector3(radius, radius, radius),
+        n_g: n,
+        n_s: n,
+        uv: (turns(y, x), acos(z) * R::splat(INV_PI)),
     }
 }
 
@@ -319,5 +362,11 @@ fn turns<R: Real>(y: R, x: R) -> R {
 impl Vertex {
     pub(super) fn new(position: Vec3, normal: Vec3, uv: Vec2) -> Self {
         Self { position, u: uv.x, normal, v: uv.y }
+    }
+
+    #[inline]
+    fn row(&self) -> [f32; 8] {
+        let Self { position: p, u, normal: n, v } = *self;
+        [p.x, p.y, p.z, u, n.x, n.y, n.z, v]
     }
 }

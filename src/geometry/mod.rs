@@ -31,4 +31,4 @@ pub use placement::{Entered, Placement};
 pub use ray::{Hit, PrimitiveId, Ray, RayLanes, Rayx8};
 pub use ray_file::Ray32;
 pub use sphere::{Sphere, SphereLanes};
-pub use triangle::{Triangle, TriangleLanes};
+pub use triangle::{Aspect, AspectColumns, Triangle, TriangleLanes};

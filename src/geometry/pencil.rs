@@ -1,7 +1,7 @@
 //! Rays through one point against the edges of a triangle: a test that only culls.
 //!
-//! The planes through an origin and the three edges of a triangle have the normals U = a × e₂, V = e₁ × a
-//! and W = e₂ × e₁ − U − V, with a = v₀ − org. A ray from that origin has the barycentric coordinates
+//! The planes through an origin and the three edges of a triangle have the normals U = e₂ × s, V = s × e₁
+//! and W = e₂ × e₁ − U − V, with s = org − v₀. A ray from that origin has the barycentric coordinates
 //! u : v : w = dir·U : dir·V : dir·W \[MT97\], so one that hits the triangle has no two of these products
 //! with different signs. If over a whole box of directions one of them is positive and another negative,
 //! none of its rays hits.
@@ -11,10 +11,10 @@
 
 use glam::Vec3;
 
-use super::TriangleLanes;
-use crate::simd::{Mask8, Real, Vec3x8, Vector3, f32x8};
+use super::Aspect;
+use crate::simd::{LANES, Mask8, Real, Vec3x8, f32x8};
 
-/// Roundings, in ulps of |dir|·(|a|·(|e₁| + |e₂|) + |e₁|·|e₂|): the kernel's products take part with at
+/// Roundings, in ulps of |dir|·(|s|·(|e₁| + |e₂|) + |e₁|·|e₂|): the kernel's products take part with at
 /// most 10 each, these with as many, and the middle and the radius of the directions with 4.
 const ULPS: f32 = 48.0 * f32::EPSILON;
 /// Against products that underflow.
@@ -52,10 +52,10 @@ impl Pencils {
 
     /// Which pencils may hold a ray that hits the triangle in a lane of the planes.
     #[inline]
-    pub fn meet(&self, planes: &EdgePlanes<f32x8>, lane: usize) -> Mask8 {
-        let margin = f32x8::splat(planes.margin.lane(lane)).fused(self.length, f32x8::splat(LEAST));
-        let along = |plane: &Vec3x8| {
-            let [x, y, z] = [plane.x, plane.y, plane.z].map(|component| f32x8::splat(component.lane(lane)));
+    pub fn meet(&self, planes: &EdgePlanes, lane: usize) -> Mask8 {
+        let margin = f32x8::splat(planes.margin[lane]).fused(self.length, f32x8::splat(LEAST));
+        let along = |plane: &[[f32; LANES]; 3]| {
+            let [x, y, z] = [0, 1, 2].map(|axis| f32x8::splat(plane[axis][lane]));
             let middle = self.middle.z.fused(z, self.middle.y.fused(y, self.middle.x * x));
             let radius = self.radius.z.fused(z.abs(), self.radius.y.fused(y.abs(), self.radius.x * x.abs()));
             (middle - radius, middle + radius)
@@ -67,37 +67,37 @@ impl Pencils {
     }
 }
 
-/// The planes through an origin and the edges of triangles in lanes.
+/// The planes through an origin and the edges of eight triangles, in columns: a lane is read from memory.
 #[derive(Clone, Copy, Debug)]
-pub struct EdgePlanes<R> {
-    u: Vector3<R>,
-    v: Vector3<R>,
-    w: Vector3<R>,
+pub struct EdgePlanes {
+    u: [[f32; LANES]; 3],
+    v: [[f32; LANES]; 3],
+    w: [[f32; LANES]; 3],
     /// Bound on the rounding of a product with a direction, for each unit of its length.
-    margin: R,
+    margin: [f32; LANES],
 }
 
-impl<R: Real> TriangleLanes<R> {
-    /// The planes through the edges and an origin.
+impl Aspect<f32x8> {
+    /// The planes through the edges and the origin.
     #[inline]
-    pub fn edge_planes(&self, org: Vec3) -> EdgePlanes<R> {
-        let size = |v: Vector3<R>| {
+    pub fn edge_planes(&self) -> EdgePlanes {
+        let size = |v: Vec3x8| {
             let v = v.abs();
             v.x + v.y + v.z
         };
-        let (e1, e2) = (self.v1 - self.v0, self.v2 - self.v0);
-        let a = self.v0 - Vector3::splat(org);
-        let (u, v) = (a.cross(e2), e1.cross(a));
+        let (e1, e2) = (self.e1, self.e2);
+        let (u, v) = (e2.cross(self.s), self.q);
         let w = e2.cross(e1) - u - v;
         let (e1, e2) = (size(e1), size(e2));
-        let margin = R::splat(ULPS) * (size(a) * (e1 + e2) + e1 * e2) + R::splat(LEAST);
-        EdgePlanes { u, v, w, margin }
+        let margin = f32x8::splat(ULPS) * (size(self.s) * (e1 + e2) + e1 * e2) + f32x8::splat(LEAST);
+        let columns = |v: Vec3x8| [v.x.to_array(), v.y.to_array(), v.z.to_array()];
+        EdgePlanes { u: columns(u), v: columns(v), w: columns(w), margin: margin.to_array() }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Ray, Triangle, seeds::Random};
+    use super::super::{Ray, Triangle, TriangleLanes, seeds::Random};
     use super::*;
     use crate::simd::Mask;
 
@@ -131,14 +131,10 @@ mod tests {
                     hit[lane] |= triangle.intersect(&ray).is_some();
                 }
             }
-            let lanes = TriangleLanes {
-                v0: Vec3x8::splat(triangle.v0),
-                v1: Vec3x8::splat(triangle.v1),
-                v2: Vec3x8::splat(triangle.v2),
-                edges: f32x8::splat(triangle.edges()),
-            };
+            let [v0, v1, v2] = [triangle.v0, triangle.v1, triangle.v2].map(Vec3x8::splat);
+            let lanes = TriangleLanes { v0, v1, v2, edges: f32x8::splat(triangle.edges()) };
             let pencils = Pencils::new(org, Vec3x8::from_fn(|i| low[i]), Vec3x8::from_fn(|i| high[i]));
-            let meet = pencils.meet(&lanes.edge_planes(org), 5).to_bitmask();
+            let meet = pencils.meet(&lanes.aspect(Vec3x8::splat(org)).edge_planes(), 5).to_bitmask();
             for (lane, hit) in hit.into_iter().enumerate() {
                 hits += u32::from(hit);
                 culled += 1 - (meet >> lane & 1);

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::triangle;
 use crate::simd::{Real, Vector3, f32x8};
 
 /// A half-open segment org + t·dir, t in (`t_near`, `t_far`]. `dir` need not be of unit length.
@@ -40,6 +41,9 @@ pub struct RayLanes<R> {
     pub t_near: R,
     /// Included upper ends.
     pub t_far: R,
+    /// Bound on the rounding in tests of triangles, for each unit of their edges; see
+    /// [`RayLanes::within`].
+    pub margin: R,
 }
 
 /// A packet of eight rays.
@@ -49,7 +53,16 @@ impl<R: Real> RayLanes<R> {
     /// Rays with their reciprocal directions.
     #[inline]
     pub fn new(org: Vector3<R>, dir: Vector3<R>, t_near: R, t_far: R) -> Self {
-        Self { org, dir, rdir: dir.map(|d| R::one() / d), t_near, t_far }
+        let margin = R::splat(f32::INFINITY);
+        Self { org, dir, rdir: dir.map(|d| R::one() / d), t_near, t_far, margin }
+    }
+
+    /// The same rays, among triangles whose coordinates are at most `reach` in magnitude. Without knowing
+    /// that, every test is as careful as one next to an edge: the answer is the same, but takes longer.
+    #[inline]
+    #[must_use]
+    pub fn within(&self, reach: Vec3) -> Self {
+        Self { margin: triangle::margin_within(self.org, self.dir, reach), ..*self }
     }
 
     /// The same ray in every lane.
@@ -61,6 +74,7 @@ impl<R: Real> RayLanes<R> {
             rdir: Vector3::splat(ray.rdir),
             t_near: R::splat(ray.t_near),
             t_far: R::splat(ray.t_far),
+            margin: R::splat(f32::INFINITY),
         }
     }
 

@@ -68,6 +68,7 @@ pub(super) fn packet(rays: &[Ray; 8]) -> Rayx8 {
         rdir: Vector3::from_fn(|i| rays[i].rdir),
         t_near: f32x8::from_fn(|i| rays[i].t_near),
         t_far: f32x8::from_fn(|i| rays[i].t_far),
+        margin: f32x8::splat(f32::INFINITY),
     }
 }
 

@@ -14,16 +14,20 @@
 //! Numerators are rounded by less than a margin that grows with the edges and the distance. Beyond it their
 //! signs are certain. Within it two neighbours might both say that the ray is on the other's side of their
 //! edge; there, and for hardly any ray, [`crossing`] decides, which can't.
+//!
+//! In lanes, a bound on the margins of all triangles of the scene, known for a ray before it meets any, sorts
+//! out those that are far beside the ray with a multiplication and a comparison.
 
 use glam::Vec3;
 
 use super::{Aabb, Ray, RayLanes, aabb, crossing::crossing};
-use crate::simd::{Mask, Real, Vector3};
+use crate::simd::{LANES, Mask, Real, Vector3, f32x8, vector3};
 
-/// Bound on the rounding of a numerator, in units of |dir|·e·(|s| + e) with e = |e₁| + |e₂| and sums of
-/// absolute components as lengths. Differences, two products and a sum in each of p and q, and three more
-/// roundings on top: at most 8 ulps for u and v; w has the sum of three.
-const ULPS: f32 = 16.0 * f32::EPSILON;
+/// Bound on the rounding of a numerator, in units of all its products: with a = |s| + |e₁| + |e₂| and
+/// e = |e₁| + |e₂|, by components, the sum of aᵢ·|dir|ⱼ·eₖ over the permutations of the axes. A product takes
+/// part in at most 7 roundings, two of them of the differences that s and an edge are; w adds two more. These
+/// are 12, for the margin is rounded itself.
+const ULPS: f32 = 6.0 * f32::EPSILON;
 /// Against products that underflow.
 const LEAST: f32 = 1e-34;
 
@@ -84,11 +88,13 @@ impl Triangle {
         let least = Real::min(Real::min(u, v), w);
         let greatest = Real::max(Real::max(u, v), w);
         let inside = Real::max(least, -greatest);
-        let edges = self.edges();
-        let margin = size(ray.dir) * edges * (size(s) + edges) * ULPS + LEAST;
+        let (d, e) = (ray.dir.abs(), e1.abs() + e2.abs());
+        let a = s.abs() + e;
+        let products = Vec3::new(a.y * e.z + a.z * e.y, a.z * e.x + a.x * e.z, a.x * e.y + a.y * e.x);
+        let margin = d.dot(products * ULPS) + LEAST;
         let (t, u, v) = if inside > margin {
             let inverse = 1.0 / det;
-            (e2.dot(q) * inverse, u * inverse, v * inverse)
+            (e2.dot(q) * inverse + 0.0, u * inverse, v * inverse)
         } else if inside >= -margin {
             crossing(ray.org, ray.dir, [self.v0, self.v1, self.v2])?
         } else {
@@ -107,6 +113,20 @@ fn size(v: Vec3) -> f32 {
     v.x + v.y + v.z
 }
 
+/// A bound on the margin of any triangle whose coordinates are at most `reach` in magnitude, for each unit of
+/// its [`edges`](Triangle::edges): no vertex is farther from the origin of the ray than org + reach, no edge
+/// longer than 2·reach. A fifth more, against the rounding of the margins themselves.
+#[inline]
+pub(super) fn margin_within<R: Real>(org: Vector3<R>, dir: Vector3<R>, reach: Vec3) -> R {
+    products(org.abs() + Vector3::splat(reach * 5.0), dir.abs()).max_element() * R::splat(1.2 * ULPS)
+}
+
+/// aⱼ·bₖ + aₖ·bⱼ for each axis i and the two others.
+#[inline]
+fn products<R: Real>(a: Vector3<R>, b: Vector3<R>) -> Vector3<R> {
+    vector3(a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x)
+}
+
 /// Triangles in lanes: eight of a block, or one in all of them.
 #[derive(Clone, Copy, Debug)]
 pub struct TriangleLanes<R> {
@@ -120,29 +140,92 @@ pub struct TriangleLanes<R> {
     pub edges: R,
 }
 
+/// Triangles as they are seen from where rays start: what of the test does not depend on a direction.
+#[derive(Clone, Copy, Debug)]
+pub struct Aspect<R> {
+    /// e₁.
+    pub e1: Vector3<R>,
+    /// e₂.
+    pub e2: Vector3<R>,
+    /// org − v₀.
+    pub s: Vector3<R>,
+    /// s × e₁.
+    pub q: Vector3<R>,
+    /// What a direction's magnitudes are multiplied with to bound the rounding of a numerator.
+    pub doubt: Vector3<R>,
+    /// The lower corners of their boxes.
+    pub min: Vector3<R>,
+    /// The upper corners.
+    pub max: Vector3<R>,
+}
+
+/// An [`Aspect`] in columns, from which lanes are read where they are needed.
+#[derive(Clone, Copy, Debug)]
+pub struct AspectColumns([[[f32; LANES]; 3]; 7]);
+
+impl AspectColumns {
+    /// From lanes.
+    #[inline]
+    pub fn new(aspect: &Aspect<f32x8>) -> Self {
+        let Aspect { e1, e2, s, q, doubt, min, max } = *aspect;
+        Self([e1, e2, s, q, doubt, min, max].map(|v| [v.x.to_array(), v.y.to_array(), v.z.to_array()]))
+    }
+
+    /// One of the lanes, in all lanes.
+    #[inline(always)]
+    pub fn splat(&self, lane: usize) -> Aspect<f32x8> {
+        let [e1, e2, s, q, doubt, min, max] = [0, 1, 2, 3, 4, 5, 6].map(|of: usize| {
+            let [x, y, z] = &self.0[of];
+            vector3(f32x8::splat(x[lane]), f32x8::splat(y[lane]), f32x8::splat(z[lane]))
+        });
+        Aspect { e1, e2, s, q, doubt, min, max }
+    }
+}
+
 impl<R: Real> TriangleLanes<R> {
+    /// As seen from an origin.
+    #[inline(always)]
+    pub fn aspect(&self, org: Vector3<R>) -> Aspect<R> {
+        let (e1, e2) = (self.v1 - self.v0, self.v2 - self.v0);
+        let (s, e) = (org - self.v0, e1.abs() + e2.abs());
+        let doubt = products(s.abs() + e, e).scale(R::splat(ULPS));
+        let (min, max) = (self.v0.min(self.v1).min(self.v2), self.v0.max(self.v1).max(self.v2));
+        Aspect { e1, e2, s, q: s.cross(e1), doubt, min, max }
+    }
+
     /// Eight rays, eight triangles, or eight of each: (hit, t, u, v) of the lanes in `active`.
     // Always: as a call, rays and triangles would go through memory.
     #[inline(always)]
     pub fn intersect(&self, ray: &RayLanes<R>, active: R::Mask) -> (R::Mask, R, R, R) {
-        let (e1, e2) = (self.v1 - self.v0, self.v2 - self.v0);
+        self.intersect_seen(&self.aspect(ray.org), ray, active)
+    }
+
+    /// [`intersect`](Self::intersect), for rays whose origin the triangles have been seen from.
+    #[inline(always)]
+    pub fn intersect_seen(
+        &self,
+        aspect: &Aspect<R>,
+        ray: &RayLanes<R>,
+        active: R::Mask,
+    ) -> (R::Mask, R, R, R) {
+        let Aspect { e1, e2, s, q, doubt, min, max } = *aspect;
         let p = ray.dir.cross(e2);
         let det = e1.dot(p);
-        let s = ray.org - self.v0;
         let u = s.dot(p);
-        let q = s.cross(e1);
         let v = ray.dir.dot(q);
         let w = det - u - v;
         let inside = u.min(v).min(w).max(-u.max(v).max(w));
-        let margin = size_lanes(ray.dir) * self.edges * (size_lanes(s) + self.edges) * R::splat(ULPS)
-            + R::splat(LEAST);
-        let possible = (-margin).le(inside) & active;
-        if possible.none() {
-            return (possible, u, u, v);
+        let near = R::splat(-LEAST).le(self.edges * ray.margin + inside) & active;
+        if near.none() {
+            return (near, u, u, v);
         }
+        let margin = ray.dir.abs().dot(doubt) + R::splat(LEAST);
+        let possible = (-margin).le(inside) & near;
         let certain = margin.lt(inside);
         let inverse = R::one() / det;
-        let mut found = (possible & certain, e2.dot(q) * inverse, u * inverse, v * inverse);
+        // A zero added: rays from +0 and from −0 see the same aspect, and have the same t.
+        let t = e2.dot(q) * inverse + R::zero();
+        let mut found = (possible & certain, t, u * inverse, v * inverse);
         let doubtful = possible & !certain;
         if doubtful.any() {
             // Copies, so that the originals need not be in memory for this.
@@ -150,9 +233,8 @@ impl<R: Real> TriangleLanes<R> {
             found = triangle.ask_again(&ray, doubtful, found);
         }
         let (hit, t, u, v) = found;
-        let bounds = (self.v0.min(self.v1).min(self.v2), self.v0.max(self.v1).max(self.v2));
         let all = (R::splat(f32::NEG_INFINITY), R::splat(f32::INFINITY));
-        let (low, high) = aabb::interval(bounds, (ray.org, ray.rdir), all);
+        let (low, high) = aabb::interval((min, max), (ray.org, ray.rdir), all);
         let t = high.min(low.max(t));
         (hit & low.le(high) & ray.t_near.lt(t) & t.le(ray.t_far), t, u, v)
     }
@@ -166,27 +248,20 @@ impl<R: Real> TriangleLanes<R> {
         lanes: R::Mask,
         (hit, t, u, v): (R::Mask, R, R, R),
     ) -> (R::Mask, R, R, R) {
-        let (mut bits, lanes) = (hit.to_bitmask(), lanes.to_bitmask());
-        let mut answers = [(0.0, 0.0, 0.0); 8];
-        for (lane, answer) in answers.iter_mut().enumerate().take(R::LANES) {
-            *answer = (t.lane(lane), u.lane(lane), v.lane(lane));
-            if lanes >> lane & 1 != 0 {
-                let vertices = [self.v0.lane(lane), self.v1.lane(lane), self.v2.lane(lane)];
-                let crossed = crossing(ray.org.lane(lane), ray.dir.lane(lane), vertices);
-                bits |= u32::from(crossed.is_some()) << lane;
-                *answer = crossed.unwrap_or_default();
+        let (mut bits, mut left) = (hit.to_bitmask(), lanes.to_bitmask());
+        let mut rows = [t, u, v].map(|row| [0, 1, 2, 3, 4, 5, 6, 7].map(|i| row.lane(i % R::LANES)));
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize % 8;
+            left &= left - 1;
+            let vertices = [self.v0.lane(lane), self.v1.lane(lane), self.v2.lane(lane)];
+            if let Some((t, u, v)) = crossing(ray.org.lane(lane), ray.dir.lane(lane), vertices) {
+                bits |= 1 << lane;
+                [rows[0][lane], rows[1][lane], rows[2][lane]] = [t, u, v];
             }
         }
-        let row = |of: fn(&(f32, f32, f32)) -> f32| R::from_fn(|lane| of(&answers[lane]));
-        (R::Mask::from_bitmask(bits), row(|a| a.0), row(|a| a.1), row(|a| a.2))
+        let [t, u, v] = rows.map(|row| R::from_fn(|lane| row[lane]));
+        (R::Mask::from_bitmask(bits), t, u, v)
     }
-}
-
-/// |x| + |y| + |z|.
-#[inline]
-fn size_lanes<R: Real>(v: Vector3<R>) -> R {
-    let v = v.abs();
-    v.x + v.y + v.z
 }
 
 #[cfg(test)]

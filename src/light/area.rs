@@ -24,6 +24,8 @@ pub struct AreaLight {
     pub side: f32,
     /// Size of the surface around any of its points, for [`offset_origin`].
     pub extent: Vec3,
+    /// Around all that shines, as rays meet it.
+    pub bounds: Aabb,
 }
 
 /// The geometry of an emitter.
@@ -35,6 +37,8 @@ pub enum Emitting {
     Triangles {
         /// Normal e₁ × e₂.
         triangles: Vec<Triangle>,
+        /// The normals as unit vectors.
+        normals: Vec<Vec3>,
         /// `sums[i]` is the area of triangles 0..=i.
         sums: Vec<f32>,
     },
@@ -72,7 +76,9 @@ impl Emitting {
                 sum
             })
             .collect();
-        Self::Triangles { triangles, sums }
+        let up = vector3(0.0, 0.0, 1.0);
+        let normal = |t: &Triangle| Vector3::from(t.e1().cross(t.e2())).normalize_or(up).into();
+        Self::Triangles { normals: triangles.iter().map(normal).collect(), triangles, sums }
     }
 
     fn area(&self) -> f32 {
@@ -109,24 +115,13 @@ impl Emitting {
                 let n = warp::sphere(u, v);
                 (Vector3::splat(sphere.center) + n.scale(R::splat(sphere.radius)), n)
             }
-            Self::Triangles { triangles, sums } => {
-                let total = sums.last().copied().unwrap_or(0.0);
-                let mut picked = [(0usize, 0.0f32); 8];
-                for (lane, pick) in picked[..R::LANES].iter_mut().enumerate() {
-                    let target = u.lane(lane) * total;
-                    let i = sums.partition_point(|&sum| sum <= target).min(sums.len() - 1);
-                    let below = if i == 0 { 0.0 } else { sums[i - 1] };
-                    // What is left of u within its triangle is a new uniform number.
-                    *pick = (i, ((target - below) / (sums[i] - below)).clamp(0.0, 1.0));
-                }
-                let (b, c) = warp::triangle(R::from_fn(|lane| picked[lane].1), v);
-                let v0 = Vector3::from_fn(|lane| triangles[picked[lane].0].v0);
-                let e1 = Vector3::from_fn(|lane| triangles[picked[lane].0].e1());
-                let e2 = Vector3::from_fn(|lane| triangles[picked[lane].0].e2());
-                (
-                    v0 + e1.scale(b) + e2.scale(c),
-                    e1.cross(e2).normalize_or(vector3(R::zero(), R::zero(), R::one())),
-                )
+            Self::Triangles { triangles, normals, sums } => {
+                let target = u * R::splat(sums.last().copied().unwrap_or(0.0));
+                let picked = Picked::new(triangles, normals, sums, target);
+                // What is left of u within its triangle is a new uniform number.
+                let rest = (target - picked.below) / (picked.end - picked.below);
+                let (b, c) = warp::triangle(rest.clamp(0.0, 1.0), v);
+                (picked.v0 + picked.e1.scale(b) + picked.e2.scale(c), picked.n_g)
             }
             Self::Canonical { kind, axes, origin, .. } => {
                 let [x, y, z] = axes.map(Vector3::<R>::splat);
@@ -143,6 +138,72 @@ impl Emitting {
                     }
                 }
             }
+        }
+    }
+}
+
+/// Up to so many triangles are gone through by all lanes together.
+const FEW: usize = 8;
+
+/// A triangle a lane, and the shares of the area at which it begins and ends.
+struct Picked<R> {
+    v0: Vector3<R>,
+    e1: Vector3<R>,
+    e2: Vector3<R>,
+    n_g: Vector3<R>,
+    below: R,
+    end: R,
+}
+
+impl<R: Real> Picked<R> {
+    /// The triangles in whose share of the running sums `target` lies. There must be one.
+    #[inline]
+    fn new(triangles: &[Triangle], normals: &[Vec3], sums: &[f32], target: R) -> Self {
+        if triangles.len() > FEW {
+            return Self::among_many(triangles, normals, sums, target);
+        }
+        let every = |k: usize| {
+            let below = if k == 0 { 0.0 } else { sums[k - 1] };
+            (triangles[k], normals[k], R::splat(below), R::splat(sums[k]))
+        };
+        let (first, n_g, below, end) = every(0);
+        let mut picked = Self {
+            v0: Vector3::splat(first.v0),
+            e1: Vector3::splat(first.e1()),
+            e2: Vector3::splat(first.e2()),
+            n_g: Vector3::splat(n_g),
+            below,
+            end,
+        };
+        for k in 1..triangles.len() {
+            let (triangle, n_g, below, end) = every(k);
+            let here = below.le(target);
+            let replace = |with: Vec3, old| Vector3::select(here, Vector3::splat(with), old);
+            picked = Self {
+                v0: replace(triangle.v0, picked.v0),
+                e1: replace(triangle.e1(), picked.e1),
+                e2: replace(triangle.e2(), picked.e2),
+                n_g: replace(n_g, picked.n_g),
+                below: R::select(here, below, picked.below),
+                end: R::select(here, end, picked.end),
+            };
+        }
+        picked
+    }
+
+    /// By bisection, lane by lane.
+    fn among_many(triangles: &[Triangle], normals: &[Vec3], sums: &[f32], target: R) -> Self {
+        let mut picked = [0; 8];
+        for (lane, place) in picked[..R::LANES].iter_mut().enumerate() {
+            *place = sums.partition_point(|&sum| sum <= target.lane(lane)).min(sums.len() - 1);
+        }
+        Self {
+            v0: Vector3::from_fn(|lane| triangles[picked[lane]].v0),
+            e1: Vector3::from_fn(|lane| triangles[picked[lane]].e1()),
+            e2: Vector3::from_fn(|lane| triangles[picked[lane]].e2()),
+            n_g: Vector3::from_fn(|lane| normals[picked[lane]]),
+            below: R::from_fn(|lane| if picked[lane] == 0 { 0.0 } else { sums[picked[lane] - 1] }),
+            end: R::from_fn(|lane| sums[picked[lane]]),
         }
     }
 }

@@ -8,12 +8,14 @@ mod choice;
 mod distribution;
 mod envmap;
 mod sh;
+mod sight;
 mod spot;
 
 pub use area::{AreaLight, Emitting, SurfacePoint};
 pub use choice::{Glimpse, LightChoice};
 pub use envmap::{Envmap, ShCoefficients, sh_irradiance};
 pub use sh::ShLight;
+pub use sight::Sight;
 pub use spot::Spot;
 
 use std::f32::consts::PI;
@@ -130,6 +132,15 @@ impl Light {
                 valid: R::Mask::splat(true),
             },
             Self::Area(light) => light.sample(from, (u, v)),
+        }
+    }
+
+    /// Does [`sample`](Self::sample) look at its random numbers?
+    #[inline]
+    pub fn is_drawn(&self) -> bool {
+        match self {
+            Self::Point { .. } | Self::Spot(_) | Self::Directional { .. } | Self::Sh(_) => false,
+            Self::Constant { .. } | Self::Envmap(_) | Self::Area(_) => true,
         }
     }
 

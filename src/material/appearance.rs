@@ -233,6 +233,18 @@ impl<'t, R: Real> Appearance<'t, R> {
         self.first.bsdf.is_smooth() || self.others.iter().any(|layer| layer.bsdf.is_smooth())
     }
 
+    /// Does [`branches`](Self::branches) ever give any?
+    #[inline]
+    pub fn is_split(&self) -> bool {
+        self.layers().any(|layer| layer.bsdf.is_split())
+    }
+
+    /// Does [`sample`](Self::sample) look at `lobe`?
+    #[inline]
+    pub fn chooses_lobes(&self) -> bool {
+        !self.others.is_empty() || self.first.bsdf.chooses_lobes()
+    }
+
     /// f |cos θ_i|, and the density with which [`sample`](Self::sample) draws the direction.
     #[inline]
     pub fn eval(&self, wi: Vector3<R>) -> (Vector3<R>, R) {

@@ -120,6 +120,32 @@ impl<R: Real> Bsdf<'_, R> {
         !matches!(self, Self::Conductor(_) | Self::Dielectric(_) | Self::Transparent)
     }
 
+    /// Does [`Bsdf::branches`] ever give any?
+    #[inline]
+    pub fn is_split(&self) -> bool {
+        matches!(self, Self::Conductor(_) | Self::Plastic(_) | Self::Dielectric(_) | Self::Transparent)
+    }
+
+    /// Does [`Bsdf::sample`] look at `lobe`?
+    #[inline]
+    pub fn chooses_lobes(&self) -> bool {
+        match self {
+            Self::Lambert(_)
+            | Self::Toon(_)
+            | Self::RoughConductor(_)
+            | Self::Conductor(_)
+            | Self::Transparent => false,
+            Self::Phong(_)
+            | Self::Ward(_)
+            | Self::RoughPlastic(_)
+            | Self::RoughDielectric(_)
+            | Self::Principled(_)
+            | Self::Measured(_)
+            | Self::Plastic(_)
+            | Self::Dielectric(_) => true,
+        }
+    }
+
     /// f(wo, wi) |cos θ_i|.
     #[inline]
     pub fn eval(&self, wo: Vector3<R>, wi: Vector3<R>) -> Vector3<R> {

@@ -15,7 +15,13 @@ impl PathKey {
     /// The key of all paths through pixel (x, y).
     #[inline]
     pub fn new(x: u32, y: u32, seed: u32) -> Self {
-        Self(mix(x ^ mix(y ^ mix(seed ^ 0x9e37_79b9))))
+        Self(Self::of_pixels(x, y, seed))
+    }
+
+    /// The same for pixels in lanes.
+    #[inline]
+    pub fn of_pixels<B: Bits>(x: B, y: B, seed: u32) -> B {
+        mix(x ^ mix(y ^ B::splat(mix(seed ^ 0x9e37_79b9))))
     }
 }
 
@@ -39,10 +45,10 @@ impl<R: Real> Sampler<R> {
         let seed = mix(self.key ^ R::Bits::splat(mix(pair.wrapping_mul(0x9e37_79b9))));
         // Reversed indices throughout: the first Sobol' dimension reversed is the index itself.
         let reversed = laine_karras(R::Bits::splat(self.sample.reverse_bits()), seed);
-        let index = reverse_bits(reversed);
+        let index = reversed.reverse_bits();
         let first = laine_karras(index, mix(seed ^ R::Bits::splat(0xa511_e9b3)));
         let second = laine_karras(sobol_second_reversed(index), mix(seed ^ R::Bits::splat(0x63d8_3595)));
-        (to_unit(reverse_bits(first)), to_unit(reverse_bits(second)))
+        (to_unit(first.reverse_bits()), to_unit(second.reverse_bits()))
     }
 
     /// The key of the other branch where a path splits in two.
@@ -89,15 +95,6 @@ fn sobol_second_reversed<B: Bits>(index: B) -> B {
     x ^ ((x >> 1) & B::splat(0x5555_5555))
 }
 
-#[inline]
-fn reverse_bits<B: Bits>(x: B) -> B {
-    let x = ((x >> 1) & B::splat(0x5555_5555)) | ((x & B::splat(0x5555_5555)) << 1);
-    let x = ((x >> 2) & B::splat(0x3333_3333)) | ((x & B::splat(0x3333_3333)) << 2);
-    let x = ((x >> 4) & B::splat(0x0f0f_0f0f)) | ((x & B::splat(0x0f0f_0f0f)) << 4);
-    let x = ((x >> 8) & B::splat(0x00ff_00ff)) | ((x & B::splat(0x00ff_00ff)) << 8);
-    (x >> 16) | (x << 16)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -130,7 +127,7 @@ mod tests {
         // The first points of the unscrambled sequence: 0, 1/2, 3/4, 1/4, 5/8, 1/8, 3/8, 7/8.
         let want = [0.0, 0.5, 0.75, 0.25, 0.625, 0.125, 0.375, 0.875];
         for (index, want) in want.into_iter().enumerate() {
-            let got: f32 = to_unit(reverse_bits(sobol_second_reversed(index as u32)));
+            let got: f32 = to_unit(sobol_second_reversed(index as u32).reverse_bits());
             assert_eq!(got, want, "{index}");
         }
     }

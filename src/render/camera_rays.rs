@@ -4,8 +4,31 @@ use super::integrator::Path;
 use crate::compile::Scene;
 use crate::film::Tile;
 use crate::geometry::RayLanes;
-use crate::math::Sampler;
-use crate::simd::{Bits, Real};
+use crate::math::{PathKey, Sampler};
+use crate::simd::{Bits, LANES, Real, f32x8, u32x8};
+
+/// A tile's pixels, in the order of its first paths.
+pub(super) struct Pixels {
+    /// Their places in the tile, row by row.
+    pub(super) places: Vec<u32>,
+    /// Column and row in the film, and the [`PathKey`]s, eight at a time; the last is repeated to fill a packet.
+    pub(super) packets: Vec<(u32x8, u32x8, u32x8)>,
+}
+
+impl Pixels {
+    pub(super) fn new(scene: &Scene, tile: &Tile) -> Self {
+        let order = morton(tile);
+        let packet = |group: &[(u32, u32)]| {
+            let pixel = |i: usize| group[i.min(group.len() - 1)];
+            let (x, y) = (u32x8::from_fn(|i| tile.x + pixel(i).0), u32x8::from_fn(|i| tile.y + pixel(i).1));
+            (x, y, keys::<f32x8>(scene, x, y))
+        };
+        Self {
+            places: order.iter().map(|&(x, y)| y * tile.width + x).collect(),
+            packets: order.chunks(LANES).map(packet).collect(),
+        }
+    }
+}
 
 /// A tile's pixels as (column, row) within it, in Morton order: eight in a row are a block of 4 × 2.
 pub(super) fn morton(tile: &Tile) -> Vec<(u32, u32)> {
@@ -18,7 +41,11 @@ pub(super) fn morton(tile: &Tile) -> Vec<(u32, u32)> {
 }
 
 fn even_bits(code: u32) -> u32 {
-    (0..16).fold(0, |bits, b| bits | (code >> (2 * b) & 1) << b)
+    let bits = code & 0x5555_5555;
+    let bits = (bits | bits >> 1) & 0x3333_3333;
+    let bits = (bits | bits >> 2) & 0x0f0f_0f0f;
+    let bits = (bits | bits >> 4) & 0x00ff_00ff;
+    (bits | bits >> 8) & 0x0000_ffff
 }
 
 /// The pair of random numbers for the lens. Vertices count their pairs upwards from 1 and never come here.
@@ -37,7 +64,7 @@ pub(super) fn rays<R: Real>(scene: &Scene, x: R::Bits, y: R::Bits, path: &Path<R
 /// Keys of the paths through pixels (x, y) of the film.
 #[inline]
 pub(super) fn keys<R: Real>(scene: &Scene, x: R::Bits, y: R::Bits) -> R::Bits {
-    R::Bits::from_fn(|i| crate::math::PathKey::new(x.lane(i), y.lane(i), scene.sampler.seed).0)
+    PathKey::of_pixels(x, y, scene.sampler.seed)
 }
 
 #[cfg(test)]

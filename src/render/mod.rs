@@ -6,7 +6,7 @@
 mod ao;
 mod aov;
 mod camera_rays;
-mod columns;
+mod connections;
 mod departure;
 mod direct;
 mod integrator;
@@ -16,6 +16,7 @@ pub mod meter;
 mod path;
 mod ray_classes;
 mod reference;
+mod rows;
 mod sort;
 mod statistics;
 mod trace;
@@ -24,14 +25,15 @@ mod wavefront;
 mod whitted;
 
 use std::{
-    sync::atomic::{AtomicU64, Ordering},
+    sync::atomic::{AtomicU64, AtomicUsize, Ordering},
     time::Instant,
 };
 
 pub use irradiance::Receiver;
 pub use ray_classes::{Query, RayClass, ray_classes};
-use rayon::prelude::*;
-pub use statistics::{LaneUse, Statistics};
+pub use statistics::{LaneUse, Profile, Statistics};
+
+use bumpalo::Bump;
 
 use crate::{
     bvh::Traversal,
@@ -43,6 +45,7 @@ use crate::{
 use integrator::Integrator;
 use irradiance::Irradiance;
 use path::PathTracer;
+use wavefront::Wavefront;
 
 /// Side of a tile in pixels: a thousand paths, whose columns stay in a core's second-level cache.
 const TILE: u32 = 32;
@@ -132,7 +135,10 @@ pub fn replay(scene: &Scene, settings: &Settings, pixel: (u32, u32), sample: u32
         fn run<I: Integrator>(self, integrator: &I) -> Self::Done {
             let Self(scene, settings, pixel, sample) = self;
             let values = match settings.backend {
-                Backend::Packet => wavefront::sample(scene, integrator, settings.sort, pixel, sample),
+                Backend::Packet => {
+                    let arena = Bump::new();
+                    Wavefront::new(&arena, scene, integrator, settings.sort).sample(pixel, sample)
+                }
                 Backend::Scalar => {
                     let (mut traversal, mut statistics) = (Traversal::new(()), Statistics::default());
                     reference::sample(scene, integrator, pixel, sample, &mut traversal, &mut statistics).0
@@ -169,29 +175,37 @@ fn render_with<I: Integrator>(
     let window = scene.film.window();
     let total = u64::from(window.width) * u64::from(window.height) * u64::from(scene.sampler.sample_count);
     let done = AtomicU64::new(0);
-    let render_tile = |tile: &Tile| -> (TileFilm, Statistics) {
-        let mut statistics = Statistics::default();
-        let sample_done = || {
-            let pixels = tile.len() as u64;
-            progress(Progress { done: done.fetch_add(pixels, Ordering::Relaxed) + pixels, total });
-        };
-        let film = match settings.backend {
-            Backend::Packet => {
-                wavefront::render(scene, integrator, settings.sort, tile, &mut statistics, sample_done)
-            }
-            Backend::Scalar => reference::render(scene, integrator, tile, &mut statistics, sample_done),
-        };
-        statistics.invalid_samples = film.invalid;
-        statistics.first_invalid = film
-            .first_invalid
-            .map(|(pixel, sample)| (tile.x + pixel % tile.width, tile.y + pixel / tile.width, sample));
-        (film, statistics)
+    let sample_done = |tile: &Tile| {
+        let pixels = tile.len() as u64;
+        progress(Progress { done: done.fetch_add(pixels, Ordering::Relaxed) + pixels, total });
     };
     let tiles = tiles(scene);
-    let finished: Vec<_> = tiles.par_iter().with_max_len(1).map(render_tile).collect();
+    let next = AtomicUsize::new(0);
+    // Each thread takes the next tile, and keeps its memory from tile to tile.
+    let thread = |_: rayon::BroadcastContext<'_>| -> Vec<(usize, TileFilm, Statistics)> {
+        let arena = Bump::new();
+        let mut wavefront = Wavefront::new(&arena, scene, integrator, settings.sort);
+        let mut finished = Vec::new();
+        loop {
+            let place = next.fetch_add(1, Ordering::Relaxed);
+            let Some(tile) = tiles.get(place) else { return finished };
+            let (mut statistics, sample_done) = (Statistics::default(), || sample_done(tile));
+            let film = match settings.backend {
+                Backend::Packet => wavefront.render(tile, &mut statistics, sample_done),
+                Backend::Scalar => reference::render(scene, integrator, tile, &mut statistics, sample_done),
+            };
+            statistics.invalid_samples = film.invalid;
+            statistics.first_invalid = film
+                .first_invalid
+                .map(|(pixel, sample)| (tile.x + pixel % tile.width, tile.y + pixel / tile.width, sample));
+            finished.push((place, film, statistics));
+        }
+    };
+    let finished = rayon::broadcast(thread);
     let mut film = Film::new(window.width, window.height, &integrator.channels());
     let mut statistics = Statistics::default();
-    for (tile, (tile_film, tile_statistics)) in tiles.iter().zip(&finished) {
+    for (place, tile_film, tile_statistics) in finished.iter().flatten() {
+        let tile = &tiles[*place];
         let place = Tile { x: tile.x - window.x, y: tile.y - window.y, ..*tile };
         film.place(&place, tile_film);
         statistics.merge(tile_statistics);

@@ -43,12 +43,21 @@ impl Integrator for PathTracer {
         if path.depth + 1 >= self.max_depth {
             return;
         }
-        if let Some(c) = vertex.connect_one(scene, path.random(PAIRS, 0)) {
+        let unused = (R::zero(), R::zero());
+        let light = if scene.draws_lights() { path.random(PAIRS, 0) } else { unused };
+        if let Some(c) = vertex.connect_one(scene, light) {
             out.shadow(0, c.lanes, c.ray, c.radiance);
         }
-        let (lobe, roulette) = path.random(PAIRS, 2);
+        let survives_by_chance = path.depth + 1 >= self.rr_depth;
+        let (lobe, roulette) = match survives_by_chance || vertex.chooses_lobes() {
+            true => path.random(PAIRS, 2),
+            false => unused,
+        };
         let (mut lanes, ray, mut next) = vertex.scatter(lobe, path.random(PAIRS, 1));
-        if next.depth >= self.rr_depth {
+        if next.depth + 1 >= self.max_depth {
+            lanes = lanes & scene.sight.may_find(ray);
+        }
+        if survives_by_chance {
             let survival = (next.beta.max_element() * next.eta2).min(R::splat(MAX_SURVIVAL));
             lanes = lanes & roulette.lt(survival);
             next.beta = next.beta.scale(R::one() / survival);

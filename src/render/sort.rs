@@ -2,15 +2,14 @@
 
 use bumpalo::{Bump, collections::Vec as BumpVec};
 
-use super::columns::IntColumn;
 use crate::simd::LANES;
 
 /// A stable counting sort of slots by a small key.
 pub(super) struct Sorter<'a> {
     /// Slots, grouped by key, ascending within a group.
-    order: IntColumn<'a>,
+    order: BumpVec<'a, u32>,
     /// Where each key's run ends.
-    ends: IntColumn<'a>,
+    ends: BumpVec<'a, u32>,
     keys: usize,
 }
 

@@ -1,6 +1,9 @@
 //! What a render took, counted while it ran.
 
-use std::{ops::AddAssign, time::Duration};
+use std::{
+    ops::AddAssign,
+    time::{Duration, Instant},
+};
 
 /// Lanes that did work, of the lanes that ran.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,6 +42,46 @@ impl AddAssign for LaneUse {
     }
 }
 
+/// What a thread that renders packets does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Stage {
+    Trace,
+    Sort,
+    Shade,
+    Add,
+}
+
+/// Where the time of a render by packets went, summed over threads.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Profile {
+    /// Rays through the tree, nearest hits and shadows.
+    pub trace: Duration,
+    /// Which material each hit has, and sorting by it.
+    pub sort: Duration,
+    /// Camera rays, materials, lights and random numbers; reading paths and writing them.
+    pub shade: Duration,
+    /// What vertices have brought into the film, and paths that end taken out.
+    pub add: Duration,
+}
+
+impl Profile {
+    /// The stages' shares of their sum, in the order of the fields; 0 if nothing ran.
+    pub fn shares(&self) -> [f64; 4] {
+        let stages = [self.trace, self.sort, self.shade, self.add].map(|stage| stage.as_secs_f64());
+        let total: f64 = stages.iter().sum();
+        stages.map(|stage| if total > 0.0 { stage / total } else { 0.0 })
+    }
+}
+
+impl AddAssign for Profile {
+    fn add_assign(&mut self, other: Self) {
+        self.trace += other.trace;
+        self.sort += other.sort;
+        self.shade += other.shade;
+        self.add += other.add;
+    }
+}
+
 /// Counts of one render.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Statistics {
@@ -54,6 +97,8 @@ pub struct Statistics {
     pub trace_lanes: LaneUse,
     /// Lane use of shading.
     pub shade_lanes: LaneUse,
+    /// Stages of the packet pipeline.
+    pub profile: Profile,
     /// Samples with a NaN or infinite value, kept out of the film.
     pub invalid_samples: u64,
     /// Pixel (x, y) and sample of the first of them, in picture order.
@@ -63,6 +108,19 @@ pub struct Statistics {
 }
 
 impl Statistics {
+    /// Counts the time since `start` to a stage; now.
+    pub(super) fn spend(&mut self, stage: Stage, start: Instant) -> Instant {
+        let now = Instant::now();
+        let spent = match stage {
+            Stage::Trace => &mut self.profile.trace,
+            Stage::Sort => &mut self.profile.sort,
+            Stage::Shade => &mut self.profile.shade,
+            Stage::Add => &mut self.profile.add,
+        };
+        *spent += now - start;
+        now
+    }
+
     /// Adds the counts of another part of the same picture.
     pub(super) fn merge(&mut self, other: &Self) {
         self.samples += other.samples;
@@ -71,6 +129,7 @@ impl Statistics {
         self.shadow_rays += other.shadow_rays;
         self.trace_lanes += other.trace_lanes;
         self.shade_lanes += other.shade_lanes;
+        self.profile += other.profile;
         self.invalid_samples += other.invalid_samples;
         let in_picture_order = |&(x, y, sample): &(u32, u32, u32)| (y, x, sample);
         self.first_invalid =

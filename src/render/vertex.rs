@@ -93,6 +93,12 @@ impl<'s, R: Real> Vertex<'s, R> {
         self.departure().leave(dir)
     }
 
+    /// Does [`scatter`](Self::scatter) look at its number for lobes?
+    #[inline]
+    pub(super) fn chooses_lobes(&self) -> bool {
+        self.appearance.chooses_lobes()
+    }
+
     /// A BSDF sample as the ray that goes on: (lanes, ray, path).
     #[inline]
     pub(super) fn scatter(&self, lobe: R, u: (R, R)) -> Continuation<R> {
@@ -114,6 +120,12 @@ impl<'s, R: Real> Vertex<'s, R> {
     pub(super) fn albedo(&self, lobe: R, u: (R, R)) -> Vector3<R> {
         let sample = self.appearance.sample(lobe, u);
         sample.weight.only(sample.valid)
+    }
+
+    /// Is there a delta lobe?
+    #[inline]
+    pub(super) fn is_split(&self) -> bool {
+        self.appearance.is_split()
     }
 
     /// The delta lobes as rays that go on: reflection, refraction.
@@ -160,7 +172,7 @@ impl<'s, R: Real> Vertex<'s, R> {
         }
         let departure = self.departure();
         for (index, light) in scene.lights.iter().enumerate() {
-            let u = random(index as u32);
+            let u = if light.is_drawn() { random(index as u32) } else { (R::zero(), R::zero()) };
             shadow(index, departure.connect(light, R::one(), mis, u, &|wi| self.worth(wi)));
         }
     }

@@ -4,150 +4,136 @@
 //! eight, trace the shadow rays, add, compact. What a group has to say goes to places that belong to the
 //! slot, so the order in which groups are shaded can't be seen in the picture: sorting changes no bit.
 
+use std::time::Instant;
+
 use bumpalo::{Bump, collections::Vec as BumpVec};
 
-use super::camera_rays;
-use super::columns::{
-    Column, Column3, IntColumn, PathColumns, RayColumns, column3, fill, gather, gather3, lane_bits, scatter,
-    scatter3,
-};
+use super::camera_rays::{self, Pixels};
+use super::connections::Connections;
 use super::integrator::{Integrator, Outgoing, Path};
+use super::rows::{Hits, Packet, Paths, fill, reserve};
 use super::sort::{Sorter, for_each_unsorted_group};
-use super::statistics::Statistics;
-use super::trace::{self, HitColumns};
+use super::statistics::{Stage, Statistics};
+use super::trace;
 use super::vertex::Vertex;
 use crate::bvh::Tracer;
 use crate::compile::Scene;
 use crate::film::{Tile, TileFilm};
 use crate::geometry::PrimitiveId;
 use crate::material::MaterialId;
-use crate::simd::{Bits, LANES, Mask8, Real, Vec3x8, f32x8, u32x8};
+use crate::simd::{Bits, LANES, Mask, Mask8, Real, Vec3x8, f32x8, u32x8};
 
-/// Renders all samples of a tile.
-pub(super) fn render<I: Integrator>(
-    scene: &Scene,
-    integrator: &I,
-    sort: bool,
-    tile: &Tile,
-    statistics: &mut Statistics,
-    sample_done: impl Fn(),
-) -> TileFilm {
-    let arena = Bump::new();
-    let pixels = camera_rays::morton(tile);
-    let channels = integrator.channels().len();
-    let mut film = TileFilm::new(tile.len(), channels);
-    let mut wave = Wavefront::new(&arena, scene, integrator, sort, channels);
-    for sample in 0..scene.sampler.sample_count {
-        wave.start(tile, &pixels, sample);
-        wave.run(sample, statistics);
-        for (place, &(x, y)) in pixels.iter().enumerate() {
-            let weight = wave.weights[place];
-            film.add((y * tile.width + x) as usize, sample, weight, |c| wave.sums[c][place]);
-        }
-        statistics.samples += pixels.len() as u64;
-        sample_done();
-    }
-    film
-}
-
-/// What one sample of the pixel (x, y) brings to each channel, finite or not.
-pub(super) fn sample<I: Integrator>(
-    scene: &Scene,
-    integrator: &I,
-    sort: bool,
-    (x, y): (u32, u32),
-    sample: u32,
-) -> Vec<f32> {
-    let arena = Bump::new();
-    let mut wave = Wavefront::new(&arena, scene, integrator, sort, integrator.channels().len());
-    wave.start(&Tile { x, y, width: 1, height: 1 }, &[(0, 0)], sample);
-    wave.run(sample, &mut Statistics::default());
-    wave.sums.iter().map(|sum| sum[0]).collect()
-}
-
-struct Wavefront<'a, I> {
+/// What one thread needs to render tiles, one after the other.
+pub(super) struct Wavefront<'a, I> {
     scene: &'a Scene,
     integrator: &'a I,
     sort: bool,
+    channels: usize,
     tracer: Tracer,
-    paths: PathColumns<'a>,
-    hits: HitColumns<'a>,
+    paths: Paths<'a>,
+    hits: Hits<'a>,
     /// Material of each hit; one more than the last material for a miss.
-    keys: IntColumn<'a>,
+    keys: BumpVec<'a, u32>,
     sorter: Sorter<'a>,
     out: Outputs<'a>,
     /// For each pixel what its sample counts.
-    weights: Column<'a>,
-    /// For each channel and each pixel what its paths have brought.
-    sums: BumpVec<'a, Column<'a>>,
+    weights: BumpVec<'a, f32x8>,
+    /// What a pixel's paths have brought, four channels at a time, pixel after pixel.
+    sums: BumpVec<'a, Quad>,
 }
+
+/// Four channels, added by one instruction.
+type Quad = [f32; 4];
 
 /// What the groups of a round have said, by slot.
 struct Outputs<'a> {
-    /// For each channel what the vertex adds.
-    added: BumpVec<'a, Column<'a>>,
-    shadows: RayColumns<'a>,
-    /// Where each shadow ray's light stands in `connected`.
-    shadow_target: IntColumn<'a>,
-    /// Light of shadow rays: index-major, then by slot; 0 where there is none.
-    connected: Column3<'a>,
-    next: PathColumns<'a>,
+    /// A pixel's channels are so many quads, the last one padded.
+    quads: usize,
+    /// What the vertex adds, four channels at a time, slot after slot.
+    added: BumpVec<'a, Quad>,
+    connections: Connections<'a>,
+    next: Paths<'a>,
     /// Which of `next` are paths at all. Branches of a slot stand together.
     alive: BumpVec<'a, bool>,
-    /// Scratch of compaction.
-    kept: IntColumn<'a>,
     branches: usize,
-    slots: usize,
 }
 
 impl<'a, I: Integrator> Wavefront<'a, I> {
-    fn new(arena: &'a Bump, scene: &'a Scene, integrator: &'a I, sort: bool, channels: usize) -> Self {
-        let planes = || BumpVec::from_iter_in((0..channels).map(|_| BumpVec::new_in(arena)), arena);
+    pub(super) fn new(arena: &'a Bump, scene: &'a Scene, integrator: &'a I, sort: bool) -> Self {
+        let channels = integrator.channels().len();
         Self {
             scene,
             integrator,
             sort,
+            channels,
             tracer: Tracer::new(()),
-            paths: PathColumns::new(arena),
-            hits: HitColumns::new(arena),
+            paths: Paths::new(arena),
+            hits: Hits::new(arena),
             keys: BumpVec::new_in(arena),
             sorter: Sorter::new(arena, scene.materials.len() + 1),
             out: Outputs {
-                added: planes(),
-                shadows: RayColumns::new(arena),
-                shadow_target: BumpVec::new_in(arena),
-                connected: column3(arena),
-                next: PathColumns::new(arena),
+                quads: channels.div_ceil(4),
+                added: BumpVec::new_in(arena),
+                connections: Connections::new(arena),
+                next: Paths::new(arena),
                 alive: BumpVec::new_in(arena),
-                kept: BumpVec::new_in(arena),
                 branches: integrator.branches(),
-                slots: 0,
             },
             weights: BumpVec::new_in(arena),
-            sums: planes(),
+            sums: BumpVec::new_in(arena),
         }
     }
 
-    /// One path from each pixel.
-    fn start(&mut self, tile: &Tile, pixels: &[(u32, u32)], sample: u32) {
-        for sum in &mut self.sums {
-            sum.clear();
-            sum.resize(pixels.len(), 0.0);
-        }
-        self.weights.clear();
-        self.paths.resize(pixels.len());
-        for (packet, group) in pixels.chunks(LANES).enumerate() {
-            let pixel = |i: usize| group[i.min(group.len() - 1)];
-            let x = u32x8::from_fn(|i| tile.x + pixel(i).0);
-            let y = u32x8::from_fn(|i| tile.y + pixel(i).1);
-            let path = Path::start(camera_rays::keys::<f32x8>(self.scene, x, y), sample);
-            let (ray, weight) = camera_rays::rays::<f32x8>(self.scene, x, y, &path);
-            let at = std::array::from_fn(|i| (packet * LANES + i) as u32);
-            self.paths.store(&at, (1 << group.len()) - 1, (ray.org, ray.dir, ray.t_far), &path);
-            self.weights.extend((0..group.len()).map(|i| weight.lane(i)));
-            for (i, slot) in at.into_iter().enumerate().take(group.len()) {
-                self.paths.pixel[slot as usize] = (packet * LANES + i) as u32;
+    /// All samples of a tile.
+    pub(super) fn render(
+        &mut self,
+        tile: &Tile,
+        statistics: &mut Statistics,
+        sample_done: impl Fn(),
+    ) -> TileFilm {
+        let pixels = Pixels::new(self.scene, tile);
+        let mut film = TileFilm::new(tile.len(), self.channels);
+        for sample in 0..self.scene.sampler.sample_count {
+            let start = Instant::now();
+            self.start(&pixels, sample);
+            statistics.spend(Stage::Shade, start);
+            self.run(sample, statistics);
+            let start = Instant::now();
+            for (place, &pixel) in pixels.places.iter().enumerate() {
+                let weight = self.weights[place / LANES].lane(place % LANES);
+                let values = &self.sums[place * self.out.quads..];
+                film.add(pixel as usize, sample, weight, |c| values[c / 4][c % 4]);
             }
+            statistics.samples += pixels.places.len() as u64;
+            sample_done();
+            statistics.spend(Stage::Add, start);
+        }
+        film
+    }
+
+    /// What one sample of the pixel (x, y) brings to each channel, finite or not.
+    pub(super) fn sample(&mut self, (x, y): (u32, u32), sample: u32) -> Vec<f32> {
+        let pixels = Pixels::new(self.scene, &Tile { x, y, width: 1, height: 1 });
+        self.start(&pixels, sample);
+        self.run(sample, &mut Statistics::default());
+        self.sums.iter().flatten().copied().take(self.channels).collect()
+    }
+
+    /// One path from each pixel.
+    fn start(&mut self, pixels: &Pixels, sample: u32) {
+        let len = pixels.places.len();
+        self.sums.clear();
+        self.sums.resize(len * self.out.quads, [0.0; 4]);
+        self.weights.clear();
+        self.paths.resize(len);
+        let slots = u32x8::from_fn(|i| i as u32);
+        for (packet, &(x, y, key)) in pixels.packets.iter().enumerate() {
+            let path = Path::start(key, sample);
+            let (ray, weight) = camera_rays::rays::<f32x8>(self.scene, x, y, &path);
+            self.weights.push(weight);
+            let pixel = slots.wrapping_add(u32x8::splat((packet * LANES) as u32));
+            let packet = Packet { org: ray.org, dir: ray.dir, t_far: ray.t_far, path, pixel };
+            self.paths.store(&pixel.to_array(), &packet);
         }
     }
 
@@ -155,6 +141,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     fn run(&mut self, sample: u32, statistics: &mut Statistics) {
         let mut depth = 0;
         while self.paths.len > 0 {
+            self.out.clear(self.paths.len, self.integrator.shadow_rays(self.scene));
             if depth == 0 && self.integrator.begins() {
                 self.begin(sample, statistics);
             } else {
@@ -162,119 +149,99 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
                 self.shade(depth, sample, statistics);
             }
             self.connect(statistics);
+            let start = Instant::now();
             self.add();
-            self.advance();
+            self.paths.take(&self.out.next, &self.out.alive);
+            statistics.spend(Stage::Add, start);
             depth += 1;
         }
     }
 
     fn trace(&mut self, depth: u32, statistics: &mut Statistics) {
-        let Self { scene, paths, hits, tracer, .. } = self;
+        let start = Instant::now();
         let rays = if depth == 0 { &mut statistics.camera_rays } else { &mut statistics.bounce_rays };
-        *rays += paths.len as u64;
-        statistics.trace_lanes += trace::closest(scene, &paths.rays, paths.len, hits, tracer);
+        *rays += self.paths.len as u64;
+        statistics.trace_lanes += trace::closest(self.scene, &self.paths, &mut self.hits, &mut self.tracer);
+        statistics.spend(Stage::Trace, start);
     }
 
     /// The first round of paths that begin without a camera.
     fn begin(&mut self, sample: u32, statistics: &mut Statistics) {
         let Self { scene, integrator, paths, out, .. } = self;
-        out.clear(paths.len, integrator.shadow_rays(scene));
-        let all: BumpVec<u32> = BumpVec::from_iter_in(0..paths.len as u32, out.kept.bump());
-        for slots in all.chunks(LANES) {
-            statistics.shade_lanes.add(slots.len() as u32);
-            let mut group = Group { slots: fill(slots), count: slots.len(), out };
-            let path = paths.path(&group.slots, 0, sample);
-            integrator.begin(scene, &path, &mut group);
+        for first in (0..paths.len as u32).step_by(LANES) {
+            let slots = u32x8::from_fn(|i| (first + i as u32).min(paths.len as u32 - 1)).to_array();
+            let count = (paths.len - first as usize).min(LANES);
+            statistics.shade_lanes.add(count as u32);
+            let Packet { path, pixel, .. } = paths.packet(&slots, 0, sample);
+            integrator.begin(scene, &path, &mut Group { slots, count, pixel, out });
         }
     }
 
     fn shade(&mut self, depth: u32, sample: u32, statistics: &mut Statistics) {
+        let start = Instant::now();
         let Self { scene, integrator, paths, hits, keys, sorter, out, .. } = self;
-        out.clear(paths.len, integrator.shadow_rays(scene));
         let miss = scene.materials.len() as u32;
         keys.clear();
-        let found = hits.primitive[..paths.len].iter().zip(&hits.u);
-        keys.extend(found.map(|(&primitive, &u)| match PrimitiveId(primitive) {
-            PrimitiveId::NONE => miss,
-            hit => scene.material(hit, u).0,
+        keys.extend((0..paths.len).map(|slot| match hits.primitive(slot) {
+            (PrimitiveId::NONE, _) => miss,
+            (hit, u) => scene.material(hit, u).0,
         }));
+        if self.sort {
+            sorter.sort(keys);
+        }
+        let start = statistics.spend(Stage::Sort, start);
+        let lanes = &mut statistics.shade_lanes;
         let group = |key: u32, slots: &[u32]| {
-            statistics.shade_lanes.add(slots.len() as u32);
-            let mut group = Group { slots: fill(slots), count: slots.len(), out };
-            let at = group.slots;
-            let path = paths.path(&at, depth, sample);
-            let (org, dir) = (gather3(&paths.rays.org, &at), gather3(&paths.rays.dir, &at));
+            lanes.add(slots.len() as u32);
+            let at = fill(slots);
+            let Packet { org, dir, path, pixel, .. } = paths.packet(&at, depth, sample);
+            let mut group = Group { slots: at, count: slots.len(), pixel, out };
             if key == miss {
                 integrator.miss(scene, &path, (org, dir), &mut group);
                 return;
             }
-            let tuv = (gather(&hits.t, &at), gather(&hits.u, &at), gather(&hits.v, &at));
-            let primitive = u32x8::from_fn(|i| hits.primitive[at[i] as usize]);
+            let (tuv, primitive) = hits.packet(&at);
             let vertex = Vertex::new(scene, path, (org, dir), tuv, primitive, MaterialId(key));
             integrator.shade(scene, &vertex, &mut group);
         };
         if self.sort {
-            sorter.sort(keys);
             sorter.for_each_group(group);
         } else {
             for_each_unsorted_group(keys, group);
         }
+        statistics.spend(Stage::Shade, start);
     }
 
     /// Takes back the light of shadow rays that are blocked.
     fn connect(&mut self, statistics: &mut Statistics) {
-        let Outputs { shadows, shadow_target, connected, .. } = &mut self.out;
-        let len = shadow_target.len();
-        statistics.shadow_rays += len as u64;
-        shadows.resize(len.next_multiple_of(LANES));
-        let used = trace::occluded(self.scene, shadows, len, &mut self.tracer, |ray| {
-            connected.iter_mut().for_each(|channel| channel[shadow_target[ray] as usize] = 0.0);
-        });
-        statistics.trace_lanes += used;
+        let start = Instant::now();
+        statistics.shadow_rays += self.out.connections.len as u64;
+        statistics.trace_lanes += trace::occluded(self.scene, &mut self.out.connections, &mut self.tracer);
+        statistics.spend(Stage::Trace, start);
     }
 
     /// Adds each vertex to its pixel: vertices in the order of slots, light in the order of its index.
     fn add(&mut self) {
-        let Self { paths, out, sums, integrator, scene, .. } = self;
-        let shadows = integrator.shadow_rays(scene);
-        for (c, (sum, added)) in sums.iter_mut().zip(&out.added).enumerate() {
-            for slot in 0..paths.len {
-                let mut value = added[slot];
-                for index in 0..shadows {
-                    value += out.connected[c][index * out.slots + slot];
-                }
-                sum[paths.pixel[slot] as usize] += value;
+        let Self { paths, out: Outputs { quads, added, connections, .. }, sums, .. } = self;
+        let quads = *quads;
+        connections.for_each(|slot, channel, light| added[slot * quads][channel] += light);
+        for (slot, values) in added.chunks_exact(quads).enumerate() {
+            let sums = &mut sums[paths.pixel(slot) * quads..][..quads];
+            for (sums, values) in sums.iter_mut().zip(values) {
+                *sums = std::array::from_fn(|c| sums[c] + values[c]);
             }
         }
-    }
-
-    /// The rays that go on become the next round's.
-    fn advance(&mut self) {
-        let Self { paths, out, .. } = self;
-        for slot in 0..paths.len * out.branches {
-            out.next.pixel[slot] = paths.pixel[slot / out.branches];
-        }
-        out.next.compact(&out.alive, &mut out.kept);
-        std::mem::swap(paths, &mut out.next);
     }
 }
 
 impl Outputs<'_> {
     fn clear(&mut self, slots: usize, shadows: usize) {
-        self.slots = slots;
-        for channel in &mut self.added {
-            channel.clear();
-            channel.resize(slots, 0.0);
-        }
-        self.shadows.resize(0);
-        self.shadow_target.clear();
-        for channel in &mut self.connected {
-            channel.clear();
-            channel.resize(slots * shadows, 0.0);
-        }
+        self.added.clear();
+        self.added.resize(slots * self.quads, [0.0; 4]);
+        self.connections.clear(slots * shadows);
         self.next.resize(slots * self.branches);
-        self.alive.clear();
-        self.alive.resize(slots * self.branches, false);
+        reserve(&mut self.alive, slots * self.branches, false);
+        self.alive.fill(false);
     }
 }
 
@@ -282,30 +249,44 @@ impl Outputs<'_> {
 struct Group<'g, 'a> {
     slots: [u32; LANES],
     count: usize,
+    pixel: u32x8,
     out: &'g mut Outputs<'a>,
 }
 
 impl Outgoing<f32x8> for Group<'_, '_> {
+    #[inline]
     fn add(&mut self, channel: usize, value: f32x8) {
-        scatter(&mut self.out.added[channel], &self.slots, (1 << self.count) - 1, value);
+        // Most surfaces don't shine.
+        if value.equal(f32x8::zero()).all() {
+            return;
+        }
+        for (&slot, value) in self.slots[..self.count].iter().zip(value.to_array()) {
+            self.out.added[slot as usize * self.out.quads + channel / 4][channel % 4] = value;
+        }
     }
 
-    fn shadow(&mut self, index: usize, lanes: Mask8, ray: (Vec3x8, Vec3x8, f32x8), radiance: Vec3x8) {
-        let lanes = lane_bits(lanes, self.count);
-        let slots = self.out.slots;
-        let target = self.slots.map(|slot| (index * slots) as u32 + slot);
-        self.out.shadows.push(lanes, ray);
-        self.out.shadow_target.extend((0..LANES).filter(|i| lanes >> i & 1 != 0).map(|i| target[i]));
-        scatter3(&mut self.out.connected, &target, lanes, radiance);
+    #[inline]
+    fn shadow(&mut self, _: usize, lanes: Mask8, ray: (Vec3x8, Vec3x8, f32x8), radiance: Vec3x8) {
+        let lanes = lanes.to_bitmask() & ((1 << self.count) - 1);
+        if lanes == 0 {
+            return;
+        }
+        self.out.connections.push(lanes, ray, radiance, u32x8::new(self.slots));
     }
 
+    #[inline]
     fn next(&mut self, index: usize, lanes: Mask8, (org, dir): (Vec3x8, Vec3x8), path: &Path<f32x8>) {
-        let lanes = lane_bits(lanes, self.count);
-        let branches = self.out.branches;
-        let at = self.slots.map(|slot| slot * branches as u32 + index as u32);
-        self.out.next.store(&at, lanes, (org, dir, f32x8::splat(f32::INFINITY)), path);
-        for i in (0..LANES).filter(|i| lanes >> i & 1 != 0) {
-            self.out.alive[at[i] as usize] = true;
+        let lanes = lanes.to_bitmask();
+        if lanes == 0 {
+            return;
+        }
+        let branches = self.out.branches as u32;
+        let at: [u32; LANES] = std::array::from_fn(|i| self.slots[i] * branches + index as u32);
+        let packet = Packet { org, dir, t_far: f32x8::splat(f32::INFINITY), path: *path, pixel: self.pixel };
+        // Rows of paths that end here are written too, and left where they are.
+        self.out.next.store(&at[..self.count], &packet);
+        for (i, &at) in at[..self.count].iter().enumerate() {
+            self.out.alive[at as usize] = lanes >> i & 1 != 0;
         }
     }
 }
@@ -317,9 +298,26 @@ mod tests {
     #[test]
     fn lanes_beyond_the_count_say_nothing() {
         let arena = Bump::new();
-        let mut column = BumpVec::from_iter_in([0.0; 16], &arena);
-        scatter(&mut column, &fill(&[3, 9]), lane_bits(Mask8::first(8), 2), f32x8::splat(1.0));
-        assert_eq!(column.iter().sum::<f32>(), 2.0);
-        assert_eq!(u32x8::from_fn(|i| fill(&[3, 9])[i]).lane(7), 9);
+        let mut out = Outputs {
+            quads: 1,
+            added: BumpVec::new_in(&arena),
+            connections: Connections::new(&arena),
+            next: Paths::new(&arena),
+            alive: BumpVec::new_in(&arena),
+            branches: 1,
+        };
+        out.clear(16, 1);
+        let all = Mask8::splat(true);
+        let (zero, one) = (Vec3x8::zero(), f32x8::splat(1.0));
+        let mut group = Group { slots: fill(&[3, 9]), count: 2, pixel: u32x8::splat(7), out: &mut out };
+        group.add(0, one);
+        group.shadow(0, all, (zero, zero, one), zero);
+        group.next(0, all, (zero, zero), &Path::start(u32x8::splat(1), 0));
+        let said: Vec<usize> = (0..16).filter(|&slot| out.added[slot] != [0.0; 4]).collect();
+        assert_eq!(said, [3, 9]);
+        assert_eq!(out.connections.len, 2);
+        let alive: Vec<usize> = (0..16).filter(|&slot| out.alive[slot]).collect();
+        assert_eq!(alive, [3, 9]);
+        assert_eq!(out.next.pixel(9), 7);
     }
 }

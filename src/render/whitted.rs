@@ -38,6 +38,9 @@ impl Integrator for Whitted {
             |k| path.random(pairs, k),
             |k, c| out.shadow(k, c.lanes, c.ray, c.radiance),
         );
+        if !vertex.is_split() {
+            return;
+        }
         let [(reflects, mirrored, reflected), (refracts, through, refracted)] = vertex.branches();
         out.next(0, reflects, mirrored, &reflected);
         let key = Sampler::<R>::new(path.key, path.sample).branch_key();

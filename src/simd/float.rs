@@ -95,6 +95,10 @@ impl Real for f32x8 {
         Self::new(std::array::from_fn(f))
     }
     #[inline]
+    fn from_rows(mut row: impl FnMut(usize) -> [f32; 8]) -> [Self; 8] {
+        transpose(std::array::from_fn(|i| Self::new(row(i))))
+    }
+    #[inline]
     fn lane(self, i: usize) -> f32 {
         self.0.as_array()[i]
     }

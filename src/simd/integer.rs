@@ -101,6 +101,11 @@ impl Bits for u32x8 {
         Self(self.0 * rhs.0)
     }
     #[inline]
+    fn reverse_bits(self) -> Self {
+        // Two instructions where the target can map bytes, and shifts elsewhere.
+        Self::new(self.to_array().map(u32::reverse_bits))
+    }
+    #[inline]
     fn equal(self, rhs: Self) -> Mask8 {
         Mask8(f32_lanes(self.0.simd_eq(rhs.0)))
     }

@@ -20,7 +20,7 @@ mod sort;
 mod tests;
 mod vector;
 
-pub use compress::{compress, le_bits};
+pub use compress::{compress, le_bits, le_bits_unless};
 pub use float::{f32x8, transpose};
 pub use integer::u32x8;
 pub use mask::Mask8;

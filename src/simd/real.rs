@@ -57,6 +57,8 @@ pub trait Bits:
     fn wrapping_add(self, rhs: Self) -> Self;
     /// Product modulo 2³².
     fn wrapping_mul(self, rhs: Self) -> Self;
+    /// Bit i becomes bit 31 − i.
+    fn reverse_bits(self) -> Self;
     /// Equal, lane by lane.
     fn equal(self, rhs: Self) -> Self::Mask;
     /// `if mask { a } else { b }`, lane by lane.
@@ -87,6 +89,8 @@ pub trait Real:
     fn splat(value: f32) -> Self;
     /// Lane `i` is `f(i)`.
     fn from_fn(f: impl FnMut(usize) -> f32) -> Self;
+    /// Number k of each lane's row in the k-th of them.
+    fn from_rows(row: impl FnMut(usize) -> [f32; 8]) -> [Self; 8];
     /// The value of a lane.
     fn lane(self, i: usize) -> f32;
     /// √x, correctly rounded.
@@ -200,6 +204,10 @@ impl Bits for u32 {
         u32::wrapping_mul(self, rhs)
     }
     #[inline]
+    fn reverse_bits(self) -> Self {
+        u32::reverse_bits(self)
+    }
+    #[inline]
     fn equal(self, rhs: Self) -> bool {
         self == rhs
     }
@@ -221,6 +229,10 @@ impl Real for f32 {
     #[inline]
     fn from_fn(mut f: impl FnMut(usize) -> f32) -> Self {
         f(0)
+    }
+    #[inline]
+    fn from_rows(mut row: impl FnMut(usize) -> [f32; 8]) -> [Self; 8] {
+        row(0)
     }
     #[inline]
     fn lane(self, _: usize) -> f32 {

@@ -17,9 +17,9 @@ const STEEPEST: f32 = 1e18;
 /// All that a ray needs on its way: three rows of eight, so that it is copied in three moves.
 ///
 /// ```text
-/// inv x y z     near shift x y z   t_near  t_far
-/// far shift x y z     org x y z    t_near  index
-/// dir x y z     rdir x y z         –       signs
+/// inv x y z     low shift x y z    t_near  t_far
+/// high shift x y z    org x y z    t_near  index
+/// dir x y z     rdir x y z         margin  –
 /// ```
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
@@ -28,9 +28,10 @@ pub(super) struct Ready([[f32; 8]; 3]);
 /// What a box test needs along an axis: a plane at x is met at x·inv + shift.
 pub(super) struct Slab {
     pub(super) inv: f32,
-    pub(super) near_shift: f32,
-    pub(super) far_shift: f32,
-    pub(super) negative: bool,
+    /// For lower bounds, which are moved down by the margin.
+    pub(super) low_shift: f32,
+    /// For upper bounds, which are moved up.
+    pub(super) high_shift: f32,
 }
 
 impl Ready {
@@ -38,13 +39,8 @@ impl Ready {
 
     #[inline]
     pub(super) fn slab(&self, axis: usize) -> Slab {
-        let [first, second, third] = &self.0;
-        Slab {
-            inv: first[axis],
-            near_shift: first[axis + 3],
-            far_shift: second[axis],
-            negative: third[7].to_bits() >> axis & 1 != 0,
-        }
+        let [first, second, _] = &self.0;
+        Slab { inv: first[axis], low_shift: first[axis + 3], high_shift: second[axis] }
     }
 
     /// Lower end of the ray, not below 0, for box tests.
@@ -76,29 +72,27 @@ impl Ready {
             rdir: splat(third, 3),
             t_near: f32x8::splat(second[6]),
             t_far: f32x8::splat(first[7]),
+            margin: f32x8::splat(third[6]),
         }
     }
 
     /// The rays of a packet that starts at a place in its stream.
     fn packet(rays: &Rayx8, first: usize, reach: glam::Vec3, ready: &mut [Self; LANES]) {
-        let RayLanes { org, dir, rdir, t_near, t_far } = rays;
+        let RayLanes { org, dir, rdir, t_near, t_far, margin: doubt } = rays;
         let inv = rdir.map(|r| r.max(f32x8::splat(-STEEPEST)).min(f32x8::splat(STEEPEST)));
         let reach = Vec3x8::splat(reach);
-        let margin =
-            |inv: f32x8, org: f32x8, reach: f32x8| f32x8::splat(MARGIN) * inv.abs() * (org.abs() + reach);
+        let margin = |inv: f32x8, org: f32x8, reach: f32x8| f32x8::splat(MARGIN) * inv * (org.abs() + reach);
         let axis = |inv: f32x8, org: f32x8, reach: f32x8| {
             let (shift, margin) = (-(org * inv), margin(inv, org, reach));
             (shift - margin, shift + margin)
         };
         let (x, y, z) =
             (axis(inv.x, org.x, reach.x), axis(inv.y, org.y, reach.y), axis(inv.z, org.z, reach.z));
-        let sign = |x: f32x8, bit: u32| (x.to_bits() >> 31) << bit;
-        let signs = sign(inv.x, 0) | sign(inv.y, 1) | sign(inv.z, 2);
         let index = u32x8::from_fn(|i| (first + i) as u32);
         let rows = [
             transpose([inv.x, inv.y, inv.z, x.0, y.0, z.0, t_near.max(f32x8::zero()), *t_far]),
             transpose([x.1, y.1, z.1, org.x, org.y, org.z, *t_near, f32x8::from_bits(index)]),
-            transpose([dir.x, dir.y, dir.z, rdir.x, rdir.y, rdir.z, f32x8::zero(), f32x8::from_bits(signs)]),
+            transpose([dir.x, dir.y, dir.z, rdir.x, rdir.y, rdir.z, *doubt, *doubt]),
         ];
         for (i, ready) in ready.iter_mut().enumerate() {
             *ready = Self([rows[0][i].to_array(), rows[1][i].to_array(), rows[2][i].to_array()]);
@@ -149,7 +143,7 @@ impl Feed {
         tally: &mut T,
     ) -> bool {
         while self.waiting == 0 {
-            if runs.peek::<ANY, L, S, T>(leaves, stream, tally) != Some(Way::Wave) {
+            if runs.peek::<ANY, L, S, T>(bvh, leaves, stream, tally) != Some(Way::Wave) {
                 return false;
             }
             self.refill::<ANY, S>(bvh, stream, runs);

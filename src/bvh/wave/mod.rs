@@ -10,13 +10,15 @@
 mod feed;
 mod slot;
 
-use super::{Bvh, Child, Kind, Leaves, Node, Stream, Tally, cost::Cost, run::Runs};
+use super::{Bvh, Child, Leaves, Node, Stream, Tally, cost::Cost, run::Runs};
 use crate::simd::prefetch;
 use feed::Feed;
 use slot::Slot;
 
 /// Rays in turn: fewer leave latency open, more leave the first-level cache.
 const SLOTS: usize = 16;
+/// All slots.
+const ALL: u32 = (1 << SLOTS) - 1;
 
 /// Slots of a wave and the rays that wait for one, kept from stream to stream.
 pub(super) struct Wave {
@@ -30,13 +32,12 @@ impl Default for Wave {
     }
 }
 
-/// Sets of slots: a slot is at a node, at a leaf, at its end, or has nothing to do.
+/// Sets of slots: a slot is at a leaf, at its end, or, if it is neither, at a node.
 ///
 /// Which set comes next is a shift and an or, in registers: a list in memory would make each slot's turn
 /// wait for the last one's, and a branch would be wrong half of the time.
 #[derive(Clone, Copy, Default)]
 struct Sets {
-    nodes: u32,
     leaves: u32,
     done: u32,
 }
@@ -44,9 +45,18 @@ struct Sets {
 impl Sets {
     #[inline]
     fn insert(&mut self, slot: usize, child: Child) {
-        let leaf = u32::from(child.is_leaf_or_absent());
-        self.leaves |= leaf << slot;
-        self.nodes |= (leaf ^ 1) << slot;
+        self.leaves |= u32::from(child.is_leaf_or_absent()) << slot;
+        self.done |= u32::from(child == Child::ABSENT) << slot;
+    }
+
+    /// Those of some slots that are at nodes.
+    fn nodes(&self, among: u32) -> u32 {
+        among & !self.leaves
+    }
+
+    /// Those that are at leaves; they are taken out.
+    fn take_leaves(&mut self) -> u32 {
+        std::mem::replace(&mut self.leaves, self.done) & !self.done
     }
 }
 
@@ -74,7 +84,7 @@ impl Bvh {
         tally: &mut T,
     ) {
         // Occlusion rays take short steps: asking for what is near costs them more than waiting.
-        if ANY && !self.is_far() {
+        if !self.is_far() {
             self.in_turn::<ANY, false, L, S, T>(leaves, stream, runs, wave, tally);
         } else {
             self.in_turn::<ANY, true, L, S, T>(leaves, stream, runs, wave, tally);
@@ -91,45 +101,49 @@ impl Bvh {
         tally: &mut T,
     ) {
         let Wave { slots, feed } = wave;
-        let mut sets = Sets { done: (1 << SLOTS) - 1, ..Sets::default() };
+        let (mut nodes, mut sets) = (0, Sets { leaves: ALL, done: ALL });
         let mut fresh = true;
         let (mut steps, mut blocks) = (0, 0);
-        while sets.nodes | sets.leaves | sets.done != 0 {
-            for which in each(std::mem::take(&mut sets.nodes)) {
+        while nodes | sets.leaves != 0 {
+            steps += nodes.count_ones();
+            for which in each(nodes) {
                 let slot = &mut slots[which];
                 tally.node(1);
-                steps += 1;
                 slot.step::<ANY>(&self.nodes[slot.child.index()]);
                 ask_for::<ASK, L>(slot.child, &self.nodes, leaves);
                 sets.insert(which, slot.child);
             }
-            for which in each(std::mem::take(&mut sets.leaves)) {
+            nodes = sets.nodes(nodes);
+            let at_leaves = sets.take_leaves();
+            for which in each(at_leaves) {
                 let slot = &mut slots[which];
-                let mut done = slot.child == Child::ABSENT;
-                if let Kind::Leaf { first, count } = slot.child.kind() {
-                    tally.leaf(count, 1);
-                    blocks += leaves.blocks(first, count);
-                    let leaf = slot.child;
-                    done = slot.test::<ANY, L>(leaves, first, count);
-                    if ANY && slot.hit.t == f32::NEG_INFINITY {
-                        runs.occluder.remember(leaf);
-                    }
+                let leaf = slot.child;
+                let (first, count) = leaf.slots();
+                tally.leaf(count, 1);
+                blocks += leaves.blocks(first, count);
+                slot.test::<ANY, L>(leaves, first, count);
+                if ANY && slot.hit.t == f32::NEG_INFINITY {
+                    runs.occluder.remember(leaf);
+                    slot.child = Child::ABSENT;
                 }
                 ask_for::<ASK, L>(slot.child, &self.nodes, leaves);
                 sets.insert(which, slot.child);
-                sets.done |= u32::from(done) << which;
             }
-            sets.nodes &= !sets.done;
-            sets.leaves &= !sets.done;
-            for which in each(std::mem::take(&mut sets.done)) {
+            nodes |= sets.nodes(at_leaves);
+            let done = std::mem::take(&mut sets.done);
+            sets.leaves &= !done;
+            let mut started = 0;
+            for which in each(done) {
                 let slot = &mut slots[which];
                 if !fresh {
                     stream.answer(slot.index(), &slot.hit.settle::<ANY>());
                 }
                 if feed.next::<ANY, L, S, T>(self, leaves, stream, runs, slot, tally) {
+                    started |= 1 << which;
                     sets.insert(which, slot.child);
                 }
             }
+            nodes |= sets.nodes(started);
             fresh = false;
         }
         let (rays, kinds) = feed.take_count();

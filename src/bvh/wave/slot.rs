@@ -3,7 +3,7 @@
 use super::feed::Ready;
 use crate::bvh::{Child, Leaves, Node, STACK};
 use crate::geometry::{Hit, PrimitiveId};
-use crate::simd::{Bits, Real, compress, f32x8, le_bits, sort_descending, u32x8};
+use crate::simd::{Bits, Real, compress, f32x8, le_bits, le_bits_unless, sort_descending, u32x8};
 
 /// The ray, what it has found, and what waits for it.
 #[repr(C, align(64))]
@@ -63,13 +63,16 @@ impl Slot {
         let mut low = f32x8::splat(self.ray.t_near());
         let mut high = f32x8::splat(self.hit.t);
         for axis in 0..3 {
+            // Which of the two planes is met first is a minimum: cheaper than to look for it by the sign.
             let slab = self.ray.slab(axis);
-            let (near, far) = node.slabs(axis, slab.negative);
             let inv = f32x8::splat(slab.inv);
-            low = f32x8::from(*near).fused(inv, f32x8::splat(slab.near_shift)).max(low);
-            high = f32x8::from(*far).fused(inv, f32x8::splat(slab.far_shift)).min(high);
+            let [one, other] = node.bounds[axis].map(f32x8::from);
+            let one = one.fused(inv, f32x8::splat(slab.low_shift));
+            let other = other.fused(inv, f32x8::splat(slab.high_shift));
+            low = one.min(other).max(low);
+            high = one.max(other).min(high);
         }
-        let enters = le_bits(low, high);
+        let enters = le_bits_unless(low, high, node.words(), Child::ABSENT.word());
         let count = enters.count_ones();
         let top = self.top as usize;
         let children = if ANY {
@@ -88,11 +91,10 @@ impl Slot {
     /// Tests a leaf and moves to what waits. Returns whether the ray has come to its end.
     // Left to itself the compiler calls it, and a call between two rays costs them their overlap.
     #[inline(always)]
-    pub(super) fn test<const ANY: bool, L: Leaves>(&mut self, leaves: &L, first: u32, count: u32) -> bool {
+    pub(super) fn test<const ANY: bool, L: Leaves>(&mut self, leaves: &L, first: u32, count: u32) {
         let ray = &self.ray;
         leaves.intersect_block::<ANY>(first, count, || ray.splat(), &mut self.hit);
         self.pop::<ANY>();
-        (self.child == Child::ABSENT) | (ANY && self.hit.t == f32::NEG_INFINITY)
     }
 
     /// Moves to the nearest child that waits and is near enough.

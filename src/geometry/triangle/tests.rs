@@ -17,13 +17,23 @@ impl Kernel for Triangle {
     }
 
     fn lanes(surfaces: &[Self; 8], rays: &Rayx8, active: Mask8) -> Option<(Mask8, [f32x8; 3])> {
+        let row = |of: fn(&Self) -> Vec3| Vector3::from_fn(|i| of(&surfaces[i]));
         let triangles = TriangleLanes {
-            v0: Vector3::from_fn(|i| surfaces[i].v0),
-            v1: Vector3::from_fn(|i| surfaces[i].v1),
-            v2: Vector3::from_fn(|i| surfaces[i].v2),
+            v0: row(|triangle| triangle.v0),
+            v1: row(|triangle| triangle.v1),
+            v2: row(|triangle| triangle.v2),
             edges: f32x8::from_fn(|i| surfaces[i].edges()),
         };
         let (hit, t, u, v) = triangles.intersect(rays, active);
+        // What sorts out the triangles far beside a ray sorts out nothing else.
+        let points = surfaces.iter().flat_map(|s| [s.v0, s.v1, s.v2]);
+        let reach = points.fold(Vec3::ZERO, |reach, point| reach.max(point.abs()));
+        let (sorted, quick_t, quick_u, quick_v) = triangles.intersect(&rays.within(reach), active);
+        assert_eq!(sorted.to_bitmask(), hit.to_bitmask(), "{surfaces:?} {rays:?}");
+        for (quick, all) in [(quick_t, t), (quick_u, u), (quick_v, v)] {
+            let bits = |x: f32x8| f32x8::select(hit, x, f32x8::zero()).to_array().map(f32::to_bits);
+            assert_eq!(bits(quick), bits(all));
+        }
         Some((hit, [t, u, v]))
     }
 }

@@ -1,0 +1,242 @@
+//! Paths of a wavefront: rows of eight numbers in an arena, read and written by slot.
+//!
+//! Eight paths of one material stand in eight places. A row is half a cache line, and one transposition makes eight
+//! registers of eight rows; column by column, each number would be a load of its own.
+
+use bumpalo::{Bump, collections::Vec as BumpVec};
+
+use super::integrator::Path;
+use crate::geometry::{Hit, PrimitiveId, RayLanes};
+use crate::simd::{LANES, Real, Vec3x8, f32x8, transpose, u32x8, vector3};
+
+/// Eight numbers a slot. Lengths are padded to whole packets.
+pub(super) type Rows<'a> = BumpVec<'a, f32x8>;
+
+/// Makes room for so many slots; what is in them stays.
+pub(super) fn reserve<T: Clone>(slots: &mut BumpVec<T>, len: usize, fresh: T) {
+    let padded = len.next_multiple_of(LANES);
+    if slots.len() < padded {
+        slots.resize(padded, fresh);
+    }
+}
+
+/// Number k of each of these slots in register k.
+#[inline]
+fn gather(rows: &[f32x8], slots: &[u32; LANES]) -> [f32x8; LANES] {
+    transpose(std::array::from_fn(|i| rows[slots[i] as usize]))
+}
+
+/// The other way round, for the first `count` slots.
+#[inline]
+fn scatter(rows: &mut [f32x8], at: &[u32], numbers: [f32x8; LANES]) {
+    let packet = transpose(numbers);
+    for (row, &at) in packet.iter().zip(at) {
+        rows[at as usize] = *row;
+    }
+}
+
+/// Slots for a packet from fewer than eight: the last is repeated, so that every lane holds a real path.
+#[inline]
+pub(super) fn fill(slots: &[u32]) -> [u32; LANES] {
+    std::array::from_fn(|i| slots[i.min(slots.len() - 1)])
+}
+
+/// Eight paths: their rays, what they are worth, and the places of their pixels in the tile.
+#[derive(Clone, Copy)]
+pub(super) struct Packet {
+    pub(super) org: Vec3x8,
+    pub(super) dir: Vec3x8,
+    pub(super) t_far: f32x8,
+    pub(super) path: Path<f32x8>,
+    pub(super) pixel: u32x8,
+}
+
+/// Paths in flight.
+pub(super) struct Paths<'a> {
+    /// Origin, direction, end; key.
+    rays: Rows<'a>,
+    /// β, density, η²; pixel.
+    worth: Rows<'a>,
+    /// Slots in use.
+    pub(super) len: usize,
+}
+
+impl<'a> Paths<'a> {
+    pub(super) fn new(arena: &'a Bump) -> Self {
+        Self { rays: BumpVec::new_in(arena), worth: BumpVec::new_in(arena), len: 0 }
+    }
+
+    pub(super) fn resize(&mut self, len: usize) {
+        self.len = len;
+        reserve(&mut self.rays, len, f32x8::zero());
+        reserve(&mut self.worth, len, f32x8::zero());
+    }
+
+    /// Writes the first lanes of a packet to the slots `at`.
+    #[inline]
+    pub(super) fn store(&mut self, at: &[u32], packet: &Packet) {
+        let Packet { org, dir, t_far, path, pixel } = packet;
+        let key = f32x8::from_bits(path.key);
+        scatter(&mut self.rays, at, [org.x, org.y, org.z, dir.x, dir.y, dir.z, *t_far, key]);
+        let (beta, pixel) = (path.beta, f32x8::from_bits(*pixel));
+        scatter(&mut self.worth, at, [beta.x, beta.y, beta.z, path.pdf, path.eta2, pixel, pixel, pixel]);
+    }
+
+    /// The paths in some slots.
+    #[inline]
+    pub(super) fn packet(&self, slots: &[u32; LANES], depth: u32, sample: u32) -> Packet {
+        let [ox, oy, oz, dx, dy, dz, t_far, key] = gather(&self.rays, slots);
+        let [r, g, b, pdf, eta2, pixel, ..] = gather(&self.worth, slots);
+        Packet {
+            org: vector3(ox, oy, oz),
+            dir: vector3(dx, dy, dz),
+            t_far,
+            path: Path { beta: vector3(r, g, b), pdf, eta2, key: key.to_bits(), depth, sample },
+            pixel: pixel.to_bits(),
+        }
+    }
+
+    /// The rays of the packet that starts at a slot.
+    #[inline]
+    pub(super) fn rays(&self, first: usize) -> RayLanes<f32x8> {
+        let rows = self.rays[first..].first_chunk().copied().unwrap_or_default();
+        let [ox, oy, oz, dx, dy, dz, t_far, _] = transpose(rows);
+        RayLanes::new(vector3(ox, oy, oz), vector3(dx, dy, dz), f32x8::zero(), t_far)
+    }
+
+    /// The place of a path's pixel.
+    #[inline]
+    pub(super) fn pixel(&self, slot: usize) -> usize {
+        self.worth[slot].lane(5).to_bits() as usize
+    }
+
+    /// Takes those paths of `from` that are alive, in order.
+    pub(super) fn take(&mut self, from: &Self, alive: &[bool]) {
+        self.resize(from.len);
+        let mut kept = 0;
+        for (packet, alive) in alive[..from.len.next_multiple_of(LANES)].chunks_exact(LANES).enumerate() {
+            if alive == [false; LANES] {
+                continue;
+            }
+            for (lane, &alive) in alive.iter().enumerate() {
+                let slot = packet * LANES + lane;
+                // Written before it is known whether it stays: nobody guesses a branch.
+                (self.rays[kept], self.worth[kept]) = (from.rays[slot], from.worth[slot]);
+                kept += usize::from(alive);
+            }
+        }
+        self.len = kept;
+    }
+}
+
+/// What the paths have hit.
+pub(super) struct Hits<'a>(Rows<'a>);
+
+impl<'a> Hits<'a> {
+    pub(super) fn new(arena: &'a Bump) -> Self {
+        Self(BumpVec::new_in(arena))
+    }
+
+    pub(super) fn resize(&mut self, len: usize) {
+        reserve(&mut self.0, len, f32x8::zero());
+    }
+
+    #[inline]
+    pub(super) fn set(&mut self, slot: usize, hit: &Hit) {
+        let primitive = f32::from_bits(hit.primitive.0);
+        self.0[slot] = f32x8::new([hit.t, hit.u, hit.v, primitive, 0.0, 0.0, 0.0, 0.0]);
+    }
+
+    /// (primitive, u).
+    #[inline]
+    pub(super) fn primitive(&self, slot: usize) -> (PrimitiveId, f32) {
+        let row = &self.0[slot];
+        (PrimitiveId(row.lane(3).to_bits()), row.lane(1))
+    }
+
+    /// ((t, u, v), primitives) of some slots.
+    #[inline]
+    pub(super) fn packet(&self, slots: &[u32; LANES]) -> ((f32x8, f32x8, f32x8), u32x8) {
+        let [t, u, v, primitive, ..] = gather(&self.0, slots);
+        ((t, u, v), primitive.to_bits())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::Bits;
+
+    /// Numbers that say whose they are.
+    fn packet(from: u32) -> Packet {
+        let number = |k: u32| f32x8::from_fn(|i| (100 * (from + i as u32) + k) as f32);
+        let path = Path {
+            beta: vector3(number(7), number(8), number(9)),
+            pdf: number(10),
+            eta2: number(11),
+            key: u32x8::from_fn(|i| 0xff80_0001 + from + i as u32),
+            depth: 3,
+            sample: 5,
+        };
+        Packet {
+            org: vector3(number(0), number(1), number(2)),
+            dir: vector3(number(3), number(4), number(5)),
+            t_far: number(6),
+            path,
+            pixel: u32x8::from_fn(|i| 0x7f80_0001 + from + i as u32),
+        }
+    }
+
+    #[test]
+    fn paths_come_back_from_where_they_were_put() {
+        let arena = Bump::new();
+        let mut paths = Paths::new(&arena);
+        paths.resize(21);
+        let slots = [20, 3, 7, 0, 11, 12, 5, 1];
+        paths.store(&slots, &packet(1));
+        paths.store(&[2, 4], &packet(50));
+        let same = paths.packet(&slots, 3, 5);
+        assert_eq!(format!("{:?}", same.path), format!("{:?}", packet(1).path));
+        assert_eq!(same.org.lane(1), packet(1).org.lane(1));
+        assert_eq!((same.dir.lane(7), same.t_far.lane(7)), (packet(1).dir.lane(7), 806.0));
+        // Integers that are NaNs as floats keep their bits.
+        assert_eq!((paths.pixel(20), paths.pixel(2)), (0x7f80_0002, 0x7f80_0033));
+        let rays = paths.rays(0);
+        assert_eq!(rays.org.lane(2), packet(50).org.lane(0));
+        assert_eq!(rays.t_far.lane(7), 306.0);
+    }
+
+    #[test]
+    fn paths_that_are_alive_move_up_in_order() {
+        let arena = Bump::new();
+        let (mut from, mut to) = (Paths::new(&arena), Paths::new(&arena));
+        from.resize(20);
+        for first in [0, 8] {
+            from.store(&std::array::from_fn::<u32, 8, _>(|i| first + i as u32), &packet(first));
+        }
+        from.store(&[16, 17, 18, 19], &packet(16));
+        let mut alive = [false; 24];
+        for slot in [1, 6, 17, 19] {
+            alive[slot] = true;
+        }
+        to.take(&from, &alive);
+        assert_eq!(to.len, 4);
+        let places: Vec<usize> = (0..4).map(|slot| to.pixel(slot) - 0x7f80_0001).collect();
+        assert_eq!(places, [1, 6, 17, 19]);
+        assert_eq!(to.rays(0).org.lane(3), from.rays(16).org.lane(3));
+    }
+
+    #[test]
+    fn hits_are_read_as_they_were_set() {
+        let arena = Bump::new();
+        let mut hits = Hits::new(&arena);
+        hits.resize(9);
+        let hit = |slot: usize| Hit { t: slot as f32, u: 0.25, v: 0.5, primitive: PrimitiveId(slot as u32) };
+        (0..9).for_each(|slot| hits.set(slot, &hit(slot)));
+        hits.set(4, &Hit::MISS);
+        assert_eq!((hits.primitive(8), hits.primitive(4).0), ((PrimitiveId(8), 0.25), PrimitiveId::NONE));
+        let ((t, u, v), primitive) = hits.packet(&fill(&[2, 8, 4]));
+        assert_eq!((t.lane(1), u.lane(0), v.lane(7)), (8.0, 0.25, Hit::MISS.v));
+        assert_eq!((primitive.lane(1), primitive.lane(2)), (8, PrimitiveId::NONE.0));
+    }
+}
