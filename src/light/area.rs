@@ -109,7 +109,7 @@ impl Emitting {
 
     /// A point and its normal, uniform by area.
     #[inline]
-    fn sample_area<R: Real>(&self, (u, v): (R, R)) -> (Vector3<R>, Vector3<R>) {
+    pub(crate) fn sample_area<R: Real>(&self, (u, v): (R, R)) -> (Vector3<R>, Vector3<R>) {
         match self {
             Self::Sphere(sphere) => {
                 let n = warp::sphere(u, v);
