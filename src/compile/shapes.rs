@@ -111,11 +111,16 @@ impl Shapes {
         let is_drawn_from = metered || shape.radiance.is_some();
         let (class, first_in_class, emitting) = match &shape.geometry {
             Geometry::Rectangle => {
-                self.add_triangles(is_drawn_from, |all| mesh::add_rectangle(all, to_world))
+                let add = |all: &mut Surfaces| mesh::add_rectangle(all, to_world);
+                self.add_triangles(is_drawn_from, add, Emitting::quadrilateral)
             }
-            Geometry::Cube => self.add_triangles(is_drawn_from, |all| mesh::add_cube(all, to_world)),
+            Geometry::Cube => {
+                let add = |all: &mut Surfaces| mesh::add_cube(all, to_world);
+                self.add_triangles(is_drawn_from, add, Emitting::triangles)
+            }
             Geometry::Mesh { mesh, face_normals } => {
-                self.add_triangles(is_drawn_from, |all| mesh::add_mesh(all, mesh, to_world, *face_normals))
+                let add = |all: &mut Surfaces| mesh::add_mesh(all, mesh, to_world, *face_normals);
+                self.add_triangles(is_drawn_from, add, Emitting::triangles)
             }
             Geometry::Sphere { center, radius } => {
                 let row = canonical::sphere(to_world, *center, *radius);
@@ -180,6 +185,7 @@ impl Shapes {
         &mut self,
         is_drawn_from: bool,
         add: impl FnOnce(&mut Surfaces) -> Interpolated,
+        together: fn(Vec<Triangle>) -> Emitting,
     ) -> (Class, usize, Emitting) {
         let first = self.surfaces.triangles.len();
         let Interpolated { uv, normal } = add(&mut self.surfaces);
@@ -197,7 +203,7 @@ impl Shapes {
                 }
             }
         }
-        (Class::Triangles { uv, normal }, first, Emitting::triangles(emitting))
+        (Class::Triangles { uv, normal }, first, together(emitting))
     }
 
     fn add_canonical(&mut self, row: CanonicalRow) -> (Class, usize, Emitting) {
@@ -217,6 +223,7 @@ impl Shapes {
 fn emitter_extent(emitting: &Emitting) -> Vec3 {
     match emitting {
         Emitting::Sphere(sphere) => Vec3::splat(sphere.radius),
+        Emitting::Rectangle(rectangle) => rectangle.extent(),
         Emitting::Triangles { triangles, .. } => {
             triangles.iter().fold(Vec3::ZERO, |extent, t| extent.max(t.e1().abs() + t.e2().abs()))
         }
