@@ -8,10 +8,16 @@ use crate::texture::{Column, MeshAttribute};
 /// The number of a surface that is no mesh with attributes.
 pub(super) const NONE: u32 = u32::MAX;
 
+/// A mesh, and its corners for all textures that are made of it.
+struct Attributed {
+    mesh: Arc<Mesh>,
+    corners: Arc<[[u32; 3]]>,
+}
+
 /// Each mesh once, however many shapes place it.
 #[derive(Default)]
 pub(super) struct AttributedMeshes {
-    meshes: Vec<(Arc<Mesh>, Arc<[[u32; 3]]>)>,
+    meshes: Vec<Attributed>,
     numbers: HashMap<*const Mesh, u32>,
 }
 
@@ -26,7 +32,8 @@ impl AttributedMeshes {
                 && !all.numbers.contains_key(&Arc::as_ptr(mesh))
             {
                 all.numbers.insert(Arc::as_ptr(mesh), all.meshes.len() as u32);
-                all.meshes.push((Arc::clone(mesh), mesh.triangles.as_slice().into()));
+                let corners = mesh.triangles.as_slice().into();
+                all.meshes.push(Attributed { mesh: Arc::clone(mesh), corners });
             }
         }
         all
@@ -39,7 +46,7 @@ impl AttributedMeshes {
 
     /// The attribute of a name, times `scale`, of all meshes.
     pub(super) fn texture(&self, name: &str, scale: f32) -> MeshAttribute {
-        let column = |(mesh, corners): &(Arc<Mesh>, Arc<[[u32; 3]]>)| {
+        let column = |Attributed { mesh, corners }: &Attributed| {
             let attribute = mesh.attributes.iter().find(|attribute| attribute.name == name)?;
             let values = attribute.values.iter().map(|value| scale * *value).collect();
             Some(match attribute.per {
