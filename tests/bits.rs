@@ -32,6 +32,7 @@ const FROZEN: &[(&str, u64)] = &[
     ("instances", 0x89cb_b097_b0fe_4434),
     ("materials", 0x0bfd_e89b_899e_cead),
     ("mesh", 0xefe2_87ed_46ef_daf4),
+    ("painted", 0xa3f0_51e9_e05e_0b3a),
     ("sky", 0xc2d0_ecd2_0935_bc66),
     ("spheres", 0x09d0_7e3d_cf0f_b3d5),
     ("whitted", 0xde1e_e07d_d10c_2ffd),

@@ -340,8 +340,8 @@ fn legal_oddities_are_warnings() {
     has("<scene version='3.0.0'><sensor type='orthographic'/></scene>", "no film");
     has(
         "<scene version='3.0.0'><sensor type='orthographic'><film type='hdrfilm'>
-           <string name='pixel_format' value='luminance'/></film></sensor></scene>",
-        "`luminance` is not written",
+           <string name='pixel_format' value='xyz'/></film></sensor></scene>",
+        "tristimulus values",
     );
 }
 

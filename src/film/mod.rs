@@ -1,7 +1,7 @@
 //! Samples to pictures: planes of sums.
 //!
 //! A pixel is the weighted mean of its own samples, drawn and weighted by a [`Filter`] and added in sample
-//! order; a sample with a value that is not finite is counted and kept out.
+//! order; a sample with a value that is not finite, or that their sum can't hold, is counted and kept out.
 
 mod filter;
 
@@ -71,7 +71,9 @@ impl TileFilm {
     pub fn add(&mut self, pixel: usize, sample: u32, weight: f32, value: impl Fn(usize) -> f32) {
         let pixels = self.counts.len();
         let channels = self.sums.len() / pixels;
-        if !(0..channels).all(|c| value(c).is_finite()) {
+        // What is finite may not be so together with the samples before it.
+        let fits = |c: usize| (self.sums[c * pixels + pixel] + value(c) * weight).is_finite();
+        if !(0..channels).all(|c| value(c).is_finite() && fits(c)) {
             self.invalid += 1;
             let place = (pixel as u32, sample);
             self.first_invalid = Some(self.first_invalid.map_or(place, |first| first.min(place)));
@@ -158,6 +160,16 @@ mod tests {
         film.add(0, 7, 1.0, |_| f32::INFINITY);
         assert_eq!((film.mean(1, 0), film.mean(0, 0)), (3.0, 0.0));
         assert_eq!((film.invalid, film.first_invalid), (2, Some((0, 7))));
+    }
+
+    #[test]
+    fn what_overflows_the_sum_is_kept_out() {
+        let mut film = TileFilm::new(1, 1);
+        for sample in 0..3 {
+            film.add(0, sample, 1.0, |_| 3e38);
+        }
+        assert_eq!(film.mean(0, 0), 3e38);
+        assert_eq!((film.invalid, film.first_invalid), (2, Some((0, 1))));
     }
 
     #[test]

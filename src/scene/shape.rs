@@ -93,4 +93,26 @@ pub struct Mesh {
     pub uvs: Vec<Vec2>,
     /// Corners, counter-clockwise from the side of the normal.
     pub triangles: Vec<[u32; 3]>,
+    /// What textures may be made of; names differ.
+    pub attributes: Vec<Attribute>,
+}
+
+/// Values on a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Attribute {
+    /// `vertex_…` or `face_…`.
+    pub name: String,
+    /// What has a value.
+    pub per: Per,
+    /// Finite; a single number is grey.
+    pub values: Vec<Rgb>,
+}
+
+/// What the values of an [`Attribute`] belong to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Per {
+    /// One a position, linear between them.
+    Vertex,
+    /// One a triangle.
+    Face,
 }
