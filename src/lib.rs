@@ -26,6 +26,7 @@ pub mod texture;
 // floor 3
 pub mod bvh;
 pub mod camera;
+pub mod compare;
 pub mod film;
 pub mod light;
 pub mod material;

@@ -1,17 +1,18 @@
-//! Samples that are not finite: counted, kept out of the picture, and shown by themselves.
+//! Samples that are not finite, or too great for a sum: counted, kept out of the picture, and shown by themselves.
 
 #![allow(missing_docs)]
 
 use glam::DVec3;
 use packlight::{
     compile::compile,
+    film::GREATEST,
     render::{Backend, Settings, render, replay},
     scene::{
         Emitter, Film, Geometry, Integrator, Material, MaterialIndex, Rgb, SceneDescription, Shape, Texture,
     },
 };
 
-/// A wall, and before it a point so bright that single precision can't hold what reaches the middle.
+/// A wall, and before it a point so bright that no sum could hold what reaches the middle.
 fn dazzling(integrator: Integrator) -> SceneDescription {
     let mut scene = SceneDescription { integrator, ..SceneDescription::default() };
     scene.sensor.film = Film::new(40, 24);
@@ -27,7 +28,7 @@ fn dazzling(integrator: Integrator) -> SceneDescription {
         material: MaterialIndex(0),
         radiance: None,
     }];
-    let (position, intensity) = (DVec3::new(0.3, 0.2, 4.7), Rgb::new(3e38, 2e38, 1.0));
+    let (position, intensity) = (DVec3::new(0.3, 0.2, 4.7), Rgb::new(1e29, 5e28, 1.0));
     scene.emitters = vec![Emitter::Point { position, intensity }];
     scene
 }
@@ -54,26 +55,8 @@ fn every_integrator_keeps_them_out_and_finds_them_again() {
                 assert!(channel.samples.iter().all(|sample| sample.is_finite()), "{integrator:?}");
             }
             let (x, y, sample) = statistics.first_invalid.expect("one is the first");
-            // That sample by itself may be finite: then those before it leave no room for it.
-            let values =
-                |sample| replay(&scene, &settings, (x, y), sample).into_iter().map(|(_, value)| value);
-            let sum: f32 = (0..=sample).flat_map(values).sum();
-            assert!(!sum.is_finite(), "{integrator:?}: {sum} at ({x}, {y})");
-        }
-    }
-}
-
-#[test]
-fn what_is_kept_out_is_an_infinity_when_it_is_replayed() {
-    for integrator in integrators() {
-        let mut description = dazzling(integrator.clone());
-        description.sensor.sampler.sample_count = 1;
-        let scene = compile(&description).expect("the scene compiles");
-        let rendered = render(&scene, &Settings::default(), &|_| {});
-        let (x, y, sample) = rendered.statistics.first_invalid.expect("one is the first");
-        for backend in [Backend::Packet, Backend::Scalar] {
-            let values = replay(&scene, &Settings { backend, sort: true }, (x, y), sample);
-            assert!(values.iter().any(|(_, value)| !value.is_finite()), "{integrator:?} {values:?}");
+            let replayed = replay(&scene, &settings, (x, y), sample);
+            assert!(replayed.iter().any(|(_, value)| *value > GREATEST), "{integrator:?} {replayed:?}");
         }
     }
 }

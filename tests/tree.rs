@@ -286,3 +286,14 @@ fn a_triangle_takes_85_bytes_at_most() {
         }
     }
 }
+
+#[test]
+fn a_tree_says_how_deep_it_is_and_what_a_line_through_it_meets() {
+    let path = std::path::Path::new("gen:terrain:10k");
+    let loaded =
+        packlight::load::load(path, &packlight::load::LoadOptions::default()).expect("it is made here");
+    let shape = packlight::compile::compile(&loaded.description).expect("it compiles").tree_shape();
+    assert!((3..20).contains(&shape.depth), "{shape:?}");
+    assert!(shape.node_cost > 1.0 && shape.primitive_cost > 0.5, "{shape:?}");
+    assert!(shape.leaves > 1000, "{shape:?}");
+}

@@ -8,3 +8,5 @@ pub const FAILURE: u8 = 1;
 pub const USAGE: u8 = 2;
 /// The processor lacks instructions that the program was compiled to use.
 pub const CPU: u8 = 3;
+/// A signal stopped it before it was done; what was there was written.
+pub const STOPPED: u8 = 4;

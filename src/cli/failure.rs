@@ -26,6 +26,8 @@ pub(super) enum Failure {
     Scene(Box<LoadError>),
     /// Everything else, in a sentence that names the file and the way out.
     Sentence(String),
+    /// Somebody wished it to stop: what was written, in a sentence.
+    Stopped(String),
 }
 
 impl Failure {
@@ -35,6 +37,7 @@ impl Failure {
             // clap counts `--help` and `--version` among its errors, with code 0.
             Self::Usage(error) => u8::try_from(error.exit_code()).unwrap_or(exit::USAGE),
             Self::Scene(_) | Self::Sentence(_) => exit::FAILURE,
+            Self::Stopped(_) => exit::STOPPED,
         }
     }
 
@@ -44,6 +47,7 @@ impl Failure {
             Self::Usage(error) => drop(error.print()),
             Self::Scene(error) => tell(&report(error, theme(stderr().is_terminal(), no_color()))),
             Self::Sentence(sentence) => tell(&format!("error: {sentence}\n")),
+            Self::Stopped(sentence) => tell(&format!("{sentence}\n")),
         }
     }
 }

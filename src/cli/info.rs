@@ -1,13 +1,15 @@
 //! `packlight info SCENE`: what was loaded, and what it was compiled to.
 
-use std::{fmt, time::Duration};
+mod kinds;
+
+use std::{collections::BTreeMap, fmt, time::Duration};
 
 use clap::Args;
 use serde::Serialize;
 
 use super::{
     console,
-    failure::Failure,
+    failure::{Failure, warn_of},
     memory,
     overrides::IntegratorName,
     quality::{QualityName, QualityOption},
@@ -15,7 +17,7 @@ use super::{
     source::Source,
 };
 use crate::{
-    compile::{Summary, compile_with},
+    compile::{Summary, TreeShape, compile_with},
     scene::{Integrator, Projection, SceneDescription},
     simd::cpu,
 };
@@ -37,9 +39,10 @@ pub(super) struct Arguments {
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (description, load_time) = arguments.source.load()?;
-    let summary = compile_with(&description, arguments.quality.quality())?.summary();
+    let compiled = compile_with(&description, arguments.quality.quality())?;
+    warn_of_doubts(&description, compiled.summary().degenerate);
     let scene = arguments.source.path.display().to_string();
-    let info = Info::new(scene, &description, summary, load_time);
+    let info = Info::new(scene, &description, (compiled.summary(), compiled.tree_shape()), load_time);
     if arguments.json { console::print_json(&info) } else { console::print(&info.to_string()) }
 }
 
@@ -47,7 +50,17 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 #[derive(Clone, Debug, Serialize)]
 struct Info {
     scene: String,
+    /// By which checkpoints and shards know it.
+    digest: String,
     shapes: usize,
+    material_kinds: BTreeMap<String, u64>,
+    emitter_kinds: BTreeMap<String, u64>,
+    bvh_depth: u32,
+    bvh_node_cost: f64,
+    bvh_primitive_cost: f64,
+    /// Of all sums and the picture while it is rendered.
+    film_bytes: u64,
+    instructions_offered: Vec<&'static str>,
     triangles: u64,
     degenerate_triangles: u64,
     quadrics: u64,
@@ -84,7 +97,12 @@ struct Info {
 }
 
 impl Info {
-    fn new(scene: String, description: &SceneDescription, summary: Summary, load_time: Duration) -> Self {
+    fn new(
+        scene: String,
+        description: &SceneDescription,
+        (summary, tree): (Summary, TreeShape),
+        load_time: Duration,
+    ) -> Self {
         let sensor = &description.sensor;
         let (projection, x_fov_degrees) = match sensor.projection {
             Projection::Perspective { x_fov } => ("perspective", Some(x_fov.to_degrees())),
@@ -94,7 +112,15 @@ impl Info {
         };
         Self {
             scene,
+            digest: format!("{:016x}", description.fingerprint()),
             shapes: description.shapes.len(),
+            material_kinds: kinds::kinds(&description.materials),
+            emitter_kinds: kinds::kinds(&description.emitters),
+            bvh_depth: tree.depth,
+            bvh_node_cost: tree.node_cost,
+            bvh_primitive_cost: tree.primitive_cost,
+            film_bytes: film_bytes(description),
+            instructions_offered: cpu::offered(),
             triangles: summary.triangles,
             degenerate_triangles: summary.degenerate,
             quadrics: summary.quadrics,
@@ -131,6 +157,27 @@ impl Info {
     }
 }
 
+/// Tells what is probably not meant.
+pub(super) fn warn_of_doubts(description: &SceneDescription, degenerate: u64) {
+    description.doubts().iter().for_each(warn_of);
+    if degenerate > 0 {
+        let triangles = counted(degenerate, "triangle");
+        warn_of(format!("{triangles} without area can't be hit and are left out"));
+    }
+}
+
+/// Sums of a tile at two nodes of their tree, and the picture: 32 bits a channel.
+fn film_bytes(description: &SceneDescription) -> u64 {
+    let window = description.sensor.film.window();
+    let pixels = u64::from(window.width) * u64::from(window.height);
+    let (channels, weight_and_count) = (3, 2);
+    pixels * 4 * (2 * (channels + weight_and_count) + channels)
+}
+
+fn counts(count: u64, kinds: &BTreeMap<String, u64>) -> String {
+    if kinds.is_empty() { grouped(count) } else { format!("{}: {}", grouped(count), kinds::listed(kinds)) }
+}
+
 impl fmt::Display for Info {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let seconds = |seconds: f64| time(Duration::from_secs_f64(seconds));
@@ -159,22 +206,31 @@ impl fmt::Display for Info {
             ("degenerate", grouped(self.degenerate_triangles)),
             ("quadrics", grouped(self.quadrics)),
             ("instances", instances),
-            ("materials", grouped(self.materials.into())),
-            ("lights", grouped(self.lights.into())),
+            ("materials", counts(self.materials.into(), &self.material_kinds)),
+            ("lights", counts(self.lights.into(), &self.emitter_kinds)),
             (
                 "BVH",
                 format!(
-                    "{} nodes, {}, {} quality",
+                    "{} nodes, {} deep, {}, {} quality",
                     grouped(self.bvh_nodes),
+                    self.bvh_depth,
                     mebibytes(self.bvh_bytes),
                     self.quality
+                ),
+            ),
+            (
+                "",
+                format!(
+                    "a line enters {:.1} nodes and meets {:.1} primitives (surface area heuristic)",
+                    self.bvh_node_cost, self.bvh_primitive_cost
                 ),
             ),
             ("time", format!("load {}, BVH {}", seconds(self.load_seconds), seconds(self.bvh_seconds))),
             (
                 "memory",
                 self.peak_memory_bytes
-                    .map_or("unknown".into(), |bytes| format!("{} at the peak", mebibytes(bytes))),
+                    .map_or("unknown".into(), |bytes| format!("{} at the peak", mebibytes(bytes)))
+                    + &format!(", and {} to render", mebibytes(self.film_bytes)),
             ),
             ("film", format!("{} x {}", self.width, self.height)),
             ("samples", format!("{} a pixel, seed {}", self.samples_per_pixel, self.seed)),
@@ -182,6 +238,8 @@ impl fmt::Display for Info {
             ("", format!("at {}, looking along {}", vector(self.position), vector(self.looking))),
             ("integrator", integrator),
             ("lanes", self.lanes.clone()),
+            ("processor", self.instructions_offered.join(", ")),
+            ("digest", self.digest.clone()),
         ];
         writeln!(f, "{}", self.scene)?;
         for (name, value) in rows {
@@ -205,7 +263,12 @@ mod tests {
             instance_bytes: 250,
             ..Summary::default()
         };
-        Info::new("bunny.xml".into(), &SceneDescription::default(), summary, Duration::from_millis(5))
+        Info::new(
+            "bunny.xml".into(),
+            &SceneDescription::default(),
+            (summary, TreeShape::default()),
+            Duration::from_millis(5),
+        )
     }
 
     #[test]
@@ -214,7 +277,7 @@ mod tests {
         for part in [
             "69,451",
             "100,000 of 1 group, 6,945,100,000 primitives, 250 bytes an instance",
-            "3.0 MiB, medium quality",
+            "0 deep, 3.0 MiB, medium quality",
             "768 x 576",
             "perspective, 42.31 degrees",
             "path",

@@ -4,15 +4,20 @@
 
 mod bench;
 mod brdf;
+mod compare;
 mod console;
+mod duration;
 mod envmap;
 pub mod exit;
 mod failure;
 mod info;
 mod memory;
+mod merge;
+mod metadata;
 mod meter;
 mod output;
 mod overrides;
+mod part_file;
 mod progress;
 mod quality;
 mod quantity;
@@ -20,7 +25,10 @@ mod ray_file;
 mod render;
 mod replay;
 mod report;
+mod shell;
+mod signals;
 mod source;
+mod style;
 mod threads;
 mod verify;
 mod way;
@@ -39,18 +47,24 @@ Examples:
   packlight render scenes/cornell.xml -o cornell.exr
   packlight render scenes/cornell.xml -o preview.png --spp 16 --width 400 --exposure 1
   packlight render bunny.obj -o normals.exr --integrator aov
+  packlight render scenes/cornell.xml -o long.exr --spp 4096 --checkpoint long.part.exr
+  packlight render scenes/cornell.xml -o part-3.exr --shard 3/16
+  packlight merge part-*.exr -o whole.exr
+  packlight compare reference.exr test.exr -o difference.png
   packlight info scenes/cornell.xml --json
   packlight bench gen:terrain:1M --threads 1
   packlight verify scenes/cornell.xml
   packlight brdf roughconductor:alpha=0.3,material=Au -o lobe.svg
   packlight meter scenes/cornell.xml --at 0,0,0 --normal 0,1,0
   packlight envmap sky.exr --sh -o sky.json
+  packlight completions bash > ~/.local/share/bash-completion/completions/packlight
 
 Exit codes:
   0  done
   1  a file could not be read, understood or written, or a model or scene failed its check
   2  the command line was not understood
-  3  this processor lacks instructions that the program was compiled to use";
+  3  this processor lacks instructions that the program was compiled to use
+  4  stopped by a signal; what was there was written";
 
 /// Traces light in packets of eight rays
 #[derive(Debug, Parser)]
@@ -64,6 +78,10 @@ struct Cli {
 enum Command {
     /// Render a scene to a picture
     Render(Box<render::Arguments>),
+    /// Put the parts of a render together
+    Merge(merge::Arguments),
+    /// Say how two pictures differ
+    Compare(compare::Arguments),
     /// Show what is in a scene, and the lanes that trace it
     Info(info::Arguments),
     /// Measure how fast rays are traced
@@ -76,6 +94,10 @@ enum Command {
     Meter(meter::Arguments),
     /// Reduce an environment to nine coefficients
     Envmap(envmap::Arguments),
+    /// Print a script by which a shell completes packlight's words
+    Completions(shell::Completions),
+    /// Write pages for `man`
+    Man(shell::Manual),
 }
 
 /// Reads the command line, does what it says, and returns one of the codes in [`exit`].
@@ -84,12 +106,16 @@ enum Command {
 pub fn run() -> ExitCode {
     let done = Cli::try_parse().map_err(failure::Failure::from).and_then(|cli| match cli.command {
         Command::Render(arguments) => render::run(&arguments),
+        Command::Merge(arguments) => merge::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Brdf(arguments) => brdf::run(&arguments),
         Command::Meter(arguments) => meter::run(&arguments),
         Command::Envmap(arguments) => envmap::run(&arguments),
+        Command::Completions(arguments) => shell::complete(&arguments),
+        Command::Man(arguments) => shell::manual(&arguments),
     });
     match done {
         Ok(()) => ExitCode::from(exit::SUCCESS),
@@ -114,7 +140,7 @@ mod tests {
     #[test]
     fn help_documents_every_exit_code() {
         let help = Cli::command().render_help().to_string();
-        for code in [exit::SUCCESS, exit::FAILURE, exit::USAGE, exit::CPU] {
+        for code in [exit::SUCCESS, exit::FAILURE, exit::USAGE, exit::CPU, exit::STOPPED] {
             assert!(help.contains(&format!("\n  {code}  ")), "{code} is not in\n{help}");
         }
     }

@@ -1,34 +1,57 @@
 //! `packlight render SCENE -o OUT`.
 
-use std::time::Instant;
+mod aovs;
+mod keep;
+pub(super) mod lesson;
+mod rescue;
+mod share;
+
+use std::time::{Duration, Instant};
 
 use clap::{Args, CommandFactory, ValueEnum, error::ErrorKind, value_parser};
 
 use super::{
-    Cli, console,
+    Cli, console, duration,
     failure::{Failure, warn_of},
+    info::warn_of_doubts,
     memory,
+    metadata::{self, About},
     output::Output,
     overrides::{IntegratorName, MAX_SIDE, Overrides},
+    part_file,
     progress::Bar,
     quality::QualityOption,
     replay::{self, Replay},
     report::{Report, Sources},
+    signals,
     source::Source,
+    style::StyleOptions,
     threads,
 };
 use crate::{
     compile::compile_with,
-    picture::{Format, Preview, save},
-    render::{self, Settings},
-    scene::Film,
+    picture::{Format, save_with},
+    render::{self, Coverage, Frame, Plan, Settings, Watch},
+    scene::{Film, SceneDescription, Sensor},
 };
+use keep::{KeepOptions, Name};
+use lesson::Lesson;
+use share::ShardOptions;
 
 const PICTURE: &str = "Picture";
 const MACHINE: &str = "Machine (never changes a bit of the picture)";
 
+const EXAMPLES: &str = "\
+Examples:
+  packlight render scenes/cornell.xml -o cornell.exr --aov albedo,normal,depth
+  packlight render scenes/cornell.xml -o preview.png --time-limit 10s --tonemap agx
+  packlight render scenes/cornell.xml -o clean.exr --spp 4096 --target-error 0.01
+  packlight render scenes/cornell.xml -o long.exr --checkpoint kept.exr --resume kept.exr
+  packlight render scenes/cornell.xml -o part-3.exr --shard 3/16";
+
 /// Arguments of `render`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(super) struct Arguments {
     #[command(flatten)]
     source: Source,
@@ -57,9 +80,27 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "N", help_heading = PICTURE)]
     seed: Option<u32>,
 
-    /// Stops by which a .png is brightened
-    #[arg(long, value_name = "STOPS", help_heading = PICTURE, allow_negative_numbers = true, value_parser = stops)]
-    exposure: Option<f32>,
+    /// Layers of the .exr beside the picture: what the camera sees, averaged over the pixel
+    #[arg(long, value_name = "NAME,…", help_heading = PICTURE, value_delimiter = ',')]
+    aov: Vec<aovs::Layer>,
+
+    /// A part of the picture is done when its relative error is estimated to be as small as this; --spp is
+    /// the most it takes
+    #[arg(long, value_name = "ERROR", help_heading = PICTURE, value_parser = error)]
+    target_error: Option<f32>,
+
+    /// Stop after this time, with as many samples as there are then
+    #[arg(long, value_name = "TIME", help_heading = PICTURE, value_parser = duration::parse)]
+    time_limit: Option<Duration>,
+
+    #[command(flatten)]
+    style: StyleOptions,
+
+    #[command(flatten)]
+    keep: KeepOptions,
+
+    #[command(flatten)]
+    share: ShardOptions,
 
     /// In place of a picture, the numbers of this pixel's samples
     #[arg(long, value_name = "X,Y", conflicts_with = "output", value_parser = replay::pixel)]
@@ -88,6 +129,10 @@ pub(super) struct Arguments {
     #[arg(short, long)]
     quiet: bool,
 
+    /// What a ray of each kind meets in the tree
+    #[arg(long, conflicts_with = "quiet")]
+    stats: bool,
+
     /// The summary as one JSON object on stdout
     #[arg(long)]
     json: bool,
@@ -112,18 +157,29 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let Some(output) = &arguments.output else { return Ok(()) };
     output.check()?;
-    let report = pool.install(|| picture(arguments, output))?;
+    arguments.keep.check()?;
+    signals::listen();
+    let (report, coverage) = pool.install(|| picture(arguments, output))?;
 
     if let Some(warning) = report.warning() {
         warn_of(warning);
     }
     if arguments.json {
-        console::print_json(&report)
-    } else if arguments.quiet {
-        Ok(())
-    } else {
-        console::print(&report.to_string())
+        console::print_json(&report)?;
+    } else if !arguments.quiet {
+        console::print(&report.to_string())?;
     }
+    if coverage.complete || !signals::wished() {
+        return Ok(());
+    }
+    let samples = metadata::samples(coverage, report.samples_per_pixel());
+    let path = output.path.display();
+    Err(Failure::Stopped(match output.format {
+        Format::Exr => {
+            format!("stopped: {path} has {samples} samples a pixel; --resume {path} continues it")
+        }
+        _ => format!("stopped: {path} has {samples} samples a pixel"),
+    }))
 }
 
 /// Load, compile, and one pixel by itself.
@@ -141,46 +197,84 @@ fn numbers(arguments: &Arguments, pixel: [u32; 2]) -> Result<Replay, Failure> {
 }
 
 /// Load, compile, render, save.
-fn picture(arguments: &Arguments, output: &Output) -> Result<Report, Failure> {
+fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage), Failure> {
     let (mut description, load_time) = arguments.source.load()?;
     arguments.overrides().apply(&mut description);
-    can_hold(output.format, IntegratorName::from(&description.integrator))?;
-    if arguments.exposure.is_some() && output.format != Format::Png {
-        warn_of("--exposure only changes a .png; the numbers of this file stay linear");
+    description.aovs = arguments.aov.iter().map(|layer| layer.channel()).collect();
+    can_hold(output.format, &description)?;
+    if let Some(option) = arguments.style.only_for_png().filter(|_| output.format != Format::Png) {
+        warn_of(format!("{option} only changes a .png; the numbers of this file stay linear"));
     }
+    let plan = arguments.plan(&description, output.format)?;
 
     let scene = compile_with(&description, arguments.quality.quality())?;
+    warn_of_doubts(&description, scene.summary().degenerate);
     let settings = arguments.settings();
+    let facts = metadata::facts(&description);
+    let file = arguments.source.path.file_name().unwrap_or_default().to_string_lossy();
+    let name = Name { scene: &file, facts: &facts };
+    let frame = arguments.keep.begin(&scene, plan, &name)?;
     let bar = Bar::new(arguments.quiet);
-    let start = Instant::now();
-    let mut rendered = render::render(&scene, &settings, &|progress| bar.show(progress));
+    let deadline = arguments.time_limit.map(|limit| Instant::now() + limit);
+    let late = || deadline.is_some_and(|deadline| Instant::now() >= deadline);
+    let watch = Watch { progress: &|progress| bar.show(progress), stop: &|| signals::wished() || late() };
+    arguments.keep.keeping(&frame, &name, || frame.render(&scene, &settings, &watch));
     bar.finish();
-    if rendered.statistics.time.is_zero() {
-        rendered.statistics.time = start.elapsed();
-    }
-    let preview = Preview { exposure: arguments.exposure.unwrap_or(0.0) };
-    save(&rendered.picture, &output.path, preview)?;
 
-    Ok(Report::from(Sources {
+    let coverage = frame.coverage();
+    let statistics = save(arguments, output, &frame, &name, coverage)?;
+    let report = Report::from(Sources {
         scene: arguments.source.path.display().to_string(),
         output: output.path.display().to_string(),
         options: arguments.options(),
         description: &description,
+        coverage,
         settings,
         summary: scene.summary(),
-        statistics: rendered.statistics,
+        statistics,
+        lesson: arguments.stats.then(|| Lesson::new(&scene)),
         load_time,
         threads: rayon::current_num_threads(),
         peak_memory: memory::peak(),
-    }))
+    });
+    Ok((report, coverage))
+}
+
+/// The picture; and its sums, if it is a shard or not finished.
+fn save(
+    arguments: &Arguments,
+    output: &Output,
+    frame: &Frame,
+    name: &Name<'_>,
+    coverage: Coverage,
+) -> Result<render::Statistics, Failure> {
+    let render::Rendered { picture, statistics } = frame.develop();
+    let about = About {
+        scene: name.scene,
+        facts: name.facts,
+        samples: frame.samples(),
+        statistics: &statistics,
+        coverage,
+    };
+    let style = arguments.style.style(&about);
+    let is_part = frame.plan().shard != render::Shard::WHOLE || !coverage.complete;
+    let saved = if is_part && output.format == Format::Exr {
+        part_file::save(&name.part(frame), &output.path, &style)
+    } else {
+        save_with(&picture, &output.path, &style).map_err(|error| error.to_string())
+    };
+    let checkpoint = arguments.keep.checkpoint.as_deref();
+    saved.map_err(|error| rescue::rescue(frame, name, &output.path, checkpoint, &error))?;
+    Ok(statistics)
 }
 
 /// Named channels fit nowhere but into an EXR.
-fn can_hold(format: Format, integrator: IntegratorName) -> Result<(), Failure> {
-    if integrator != IntegratorName::Aov || format == Format::Exr {
+fn can_hold(format: Format, description: &SceneDescription) -> Result<(), Failure> {
+    let is_aov = IntegratorName::from(&description.integrator) == IntegratorName::Aov;
+    if format == Format::Exr || (!is_aov && description.aovs.is_empty()) {
         return Ok(());
     }
-    let message = "the aov integrator writes named channels, which only an .exr can hold";
+    let message = "layers and the aov integrator write named channels, which only an .exr can hold";
     Err(Cli::command().error(ErrorKind::ArgumentConflict, message).into())
 }
 
@@ -192,6 +286,31 @@ impl Arguments {
             width: self.width,
             height: self.height,
             seed: self.seed,
+        }
+    }
+
+    /// What is to be rendered of the scene.
+    fn plan(&self, description: &SceneDescription, format: Format) -> Result<Plan, Failure> {
+        let refuse = |message: String| Err(Cli::command().error(ErrorKind::ArgumentConflict, message).into());
+        let target_error = self.target_error;
+        if target_error.is_some() && IntegratorName::from(&description.integrator) == IntegratorName::Aov {
+            return refuse(
+                "--target-error is the error of light, which the aov integrator does not write".into(),
+            );
+        }
+        let Some(shard) = self.share.get()? else {
+            return Ok(Plan { target_error, ..Plan::default() });
+        };
+        if format != Format::Exr {
+            return refuse("the sums of a shard fit only into an .exr".into());
+        }
+        if target_error.is_some() && shard.by == render::ShardBy::Samples {
+            return refuse("--target-error needs all samples of a tile at hand; use --shard-by tiles".into());
+        }
+        let Sensor { film, sampler, .. } = &description.sensor;
+        match share::too_many(shard, sampler.sample_count, render::tile_count(film.window())) {
+            Some(why) => refuse(why),
+            None => Ok(Plan { shard, target_error }),
         }
     }
 
@@ -224,9 +343,9 @@ fn side() -> clap::builder::RangedI64ValueParser<u32> {
     value_parser!(u32).range(1..=i64::from(MAX_SIDE))
 }
 
-fn stops(argument: &str) -> Result<f32, String> {
+fn error(argument: &str) -> Result<f32, String> {
     match argument.parse::<f32>() {
-        Ok(stops) if stops.is_finite() => Ok(stops),
-        _ => Err("expected a number of stops, as in --exposure -1.5".into()),
+        Ok(error) if error > 0.0 && error < 1.0 => Ok(error),
+        _ => Err("expected a relative error between 0 and 1, as in --target-error 0.01".into()),
     }
 }

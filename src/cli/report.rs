@@ -7,10 +7,11 @@ use serde::Serialize;
 use super::{
     overrides::IntegratorName,
     quantity::{counted, grouped, mebibytes, mega, mega_per_second, time},
+    render::lesson::Lesson,
 };
 use crate::{
     compile::Summary,
-    render::{Backend, Settings, Statistics},
+    render::{Backend, Coverage, Settings, Statistics},
     scene::SceneDescription,
     simd::cpu,
 };
@@ -23,6 +24,9 @@ pub(super) struct Report {
     width: u32,
     height: u32,
     samples_per_pixel: u32,
+    /// The fewest and the most that a pixel has: other numbers where the render was stopped.
+    samples_least: u32,
+    samples_most: u32,
     integrator: String,
     backend: &'static str,
     sorted: bool,
@@ -42,6 +46,8 @@ pub(super) struct Report {
     lane_use: LaneUse,
     invalid_samples: u64,
     first_invalid: Option<Sample>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stats: Option<Lesson>,
     #[serde(skip)]
     options: String,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -85,9 +91,11 @@ pub(super) struct Sources<'a> {
     /// What decides the picture besides the scene, as typed.
     pub(super) options: String,
     pub(super) description: &'a SceneDescription,
+    pub(super) coverage: Coverage,
     pub(super) settings: Settings,
     pub(super) summary: Summary,
     pub(super) statistics: Statistics,
+    pub(super) lesson: Option<Lesson>,
     pub(super) load_time: Duration,
     pub(super) threads: usize,
     pub(super) peak_memory: Option<u64>,
@@ -104,6 +112,8 @@ impl From<Sources<'_>> for Report {
             width: description.sensor.film.window().width,
             height: description.sensor.film.window().height,
             samples_per_pixel: description.sensor.sampler.sample_count,
+            samples_least: from.coverage.least,
+            samples_most: from.coverage.most,
             integrator: IntegratorName::from(&description.integrator).to_string(),
             backend: match from.settings.backend {
                 Backend::Packet => "packet",
@@ -133,6 +143,7 @@ impl From<Sources<'_>> for Report {
             },
             invalid_samples: statistics.invalid_samples,
             first_invalid: statistics.first_invalid.map(|(x, y, sample)| Sample { x, y, sample }),
+            stats: from.lesson,
             options: from.options,
             peak_memory_bytes: from.peak_memory,
         }
@@ -140,6 +151,18 @@ impl From<Sources<'_>> for Report {
 }
 
 impl Report {
+    fn samples(&self) -> String {
+        match (self.samples_least, self.samples_most) {
+            (least, most) if least == most => counted(most, "sample"),
+            (least, most) => format!("{} to {}", grouped(least.into()), counted(most, "sample")),
+        }
+    }
+
+    /// As they were asked for.
+    pub(super) fn samples_per_pixel(&self) -> u32 {
+        self.samples_per_pixel
+    }
+
     /// NaN and infinite samples are kept out of the picture, but never silently.
     pub(super) fn warning(&self) -> Option<String> {
         let what = match self.invalid_samples {
@@ -169,7 +192,7 @@ impl fmt::Display for Report {
             "  picture  {} x {}, {} a pixel, {}",
             self.width,
             self.height,
-            counted(self.samples_per_pixel, "sample"),
+            self.samples(),
             self.integrator
         )?;
         writeln!(
@@ -212,6 +235,9 @@ impl fmt::Display for Report {
             }
             _ => writeln!(f, "  lanes    one ray at a time")?,
         }
+        if let Some(stats) = &self.stats {
+            write!(f, "{stats}")?;
+        }
         if let Some(bytes) = self.peak_memory_bytes {
             writeln!(f, "  memory   {} at the peak", mebibytes(bytes))?;
         }
@@ -230,9 +256,11 @@ mod tests {
             output: "box.exr".into(),
             options: " --seed 9".into(),
             description: &SceneDescription::default(),
+            coverage: Coverage { least: 4, most: 4, complete: true },
             settings: Settings::default(),
             summary: Summary { triangles: 1234, lights: 1, ..Summary::default() },
             statistics,
+            lesson: None,
             load_time: Duration::from_millis(12),
             threads: 2,
             peak_memory: None,

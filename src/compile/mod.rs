@@ -12,12 +12,14 @@ mod queries;
 mod shapes;
 mod streams;
 mod surfaces;
+mod tree;
 
 use std::time::{Duration, Instant};
 
 pub use lights::envmap;
 pub use primitives::Primitives;
 pub use surfaces::Surface;
+pub use tree::TreeShape;
 
 use glam::Vec3;
 
@@ -27,7 +29,7 @@ use crate::film::Filter;
 use crate::geometry::Aabb;
 use crate::light::{Light, LightChoice, LightId, Sight};
 use crate::material::MaterialTable;
-use crate::scene::{Film, Integrator, Projection, Sampler, SceneDescription, Sensor};
+use crate::scene::{AovChannel, Film, Integrator, Projection, Sampler, SceneDescription, Sensor};
 use crate::texture::TextureTable;
 use attributes::AttributedMeshes;
 use instances::Instances;
@@ -62,6 +64,8 @@ pub struct Scene {
     pub sampler: Sampler,
     /// What is estimated.
     pub integrator: Integrator,
+    /// What the camera sees besides.
+    pub aovs: Vec<AovChannel>,
     summary: Summary,
 }
 
@@ -210,6 +214,7 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
         film: description.sensor.film,
         sampler: description.sensor.sampler,
         integrator: description.integrator.clone(),
+        aovs: description.aovs.clone(),
         summary,
     })
 }

@@ -11,12 +11,15 @@
 pub(crate) mod file;
 mod lobe;
 
-use std::f32::consts::{FRAC_PI_2, PI};
+use std::{
+    f32::consts::{FRAC_PI_2, PI},
+    fmt,
+};
 
 use glam::Vec3;
 
 use super::{Sample, lambert::above, rough_conductor::reflect};
-use crate::math::{acos, atan2, sin_cos_turns, warp};
+use crate::math::{Digest, acos, atan2, sin_cos_turns, warp};
 use crate::simd::{Bits, Real, Vector3, vector3};
 pub use file::MerlError;
 use lobe::Lobe;
@@ -25,11 +28,19 @@ use lobe::Lobe;
 pub const MERL_CELLS: [usize; 3] = [90, 90, 180];
 
 /// A table of f, linear sRGB, per steradian.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct MerlTable {
     /// θ_h-major, then θ_d, then φ_d.
     values: Vec<[f32; 3]>,
     lobe: Lobe,
+}
+
+/// A digest of the million values.
+impl fmt::Debug for MerlTable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let digest = Digest::default().floats(self.values.iter().flatten().copied());
+        f.debug_struct("MerlTable").field("digest", &digest.value()).finish()
+    }
 }
 
 impl MerlTable {

@@ -5,7 +5,7 @@ use std::{fs::File, io, io::Write, path::Path};
 use image::{ExtendedColorType, ImageEncoder, Rgb, codecs::hdr::HdrEncoder, codecs::png::PngEncoder};
 use tempfile::NamedTempFile;
 
-use super::{Picture, PictureError, limits, openexr, srgb};
+use super::{ExrStyle, Picture, PictureError, Tone, limits, openexr, srgb};
 
 /// Kinds of file that can be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,14 +36,33 @@ impl Format {
 pub struct Preview {
     /// Stops: colours are multiplied by 2^exposure first.
     pub exposure: f32,
+    /// What becomes of what is then too bright.
+    pub tone: Tone,
 }
 
-/// The bytes of a file: the same picture gives the same bytes.
+/// How files hold pictures, where there is a choice.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Style {
+    /// Of a PNG.
+    pub preview: Preview,
+    /// Of an EXR.
+    pub exr: ExrStyle,
+}
+
+/// [`encode_with`] the default EXR.
 ///
 /// # Errors
 /// [`PictureError`] if the picture does not fit the format.
 pub fn encode(picture: &Picture, format: Format, preview: Preview) -> Result<Vec<u8>, PictureError> {
-    encode_as(picture, format, preview)
+    encode_with(picture, format, &Style { preview, ..Style::default() })
+}
+
+/// The bytes of a file: the same picture in the same style gives the same bytes.
+///
+/// # Errors
+/// [`PictureError`] if the picture does not fit the format.
+pub fn encode_with(picture: &Picture, format: Format, style: &Style) -> Result<Vec<u8>, PictureError> {
+    encode_as(picture, format, style)
         .map_err(|reason| PictureError::Format { path: "picture".into(), reason })
 }
 
@@ -53,10 +72,18 @@ pub fn encode(picture: &Picture, format: Format, preview: Preview) -> Result<Vec
 /// # Errors
 /// [`PictureError`] if the extension is unknown or the file can't be written.
 pub fn save(picture: &Picture, path: &Path, preview: Preview) -> Result<(), PictureError> {
+    save_with(picture, path, &Style { preview, ..Style::default() })
+}
+
+/// [`save`] in a style.
+///
+/// # Errors
+/// As for [`save`].
+pub fn save_with(picture: &Picture, path: &Path, style: &Style) -> Result<(), PictureError> {
     let refuse = |reason: String| PictureError::Format { path: path.into(), reason };
     let format = Format::from_path(path)
         .ok_or_else(|| refuse("unknown kind of picture; the name has to end in .exr, .hdr or .png".into()))?;
-    let bytes = encode_as(picture, format, preview).map_err(refuse)?;
+    let bytes = encode_as(picture, format, style).map_err(refuse)?;
     write_whole(path, &bytes).map_err(|source| PictureError::Io { path: path.into(), source })
 }
 
@@ -85,12 +112,12 @@ fn temporary_in(folder: &Path) -> io::Result<NamedTempFile<File>> {
     NamedTempFile::new_in(folder)
 }
 
-fn encode_as(picture: &Picture, format: Format, preview: Preview) -> Result<Vec<u8>, String> {
+fn encode_as(picture: &Picture, format: Format, style: &Style) -> Result<Vec<u8>, String> {
     check(picture)?;
     match format {
-        Format::Exr => openexr::encode(picture),
+        Format::Exr => openexr::encode(picture, &style.exr),
         Format::Hdr => encode_hdr(picture),
-        Format::Png => encode_png(picture, preview),
+        Format::Png => encode_png(picture, style.preview),
     }
 }
 
@@ -139,7 +166,8 @@ fn encode_hdr(picture: &Picture) -> Result<Vec<u8>, String> {
 /// A sentence, if the picture has no `R G B`.
 pub fn to_srgb(picture: &Picture, preview: Preview) -> Result<Vec<[u8; 3]>, String> {
     let scale = libm::exp2f(preview.exposure);
-    Ok(colours(picture, "PNG")?.map(|rgb| rgb.map(|value| srgb::to_byte(value * scale))).collect())
+    let shown = |rgb: [f32; 3]| preview.tone.map(rgb.map(|value| value * scale)).map(srgb::to_byte);
+    Ok(colours(picture, "PNG")?.map(shown).collect())
 }
 
 fn encode_png(picture: &Picture, preview: Preview) -> Result<Vec<u8>, String> {
@@ -194,7 +222,7 @@ mod tests {
 
     #[test]
     fn a_stop_doubles() {
-        let stop = Preview { exposure: 1.0 };
+        let stop = Preview { exposure: 1.0, ..Preview::default() };
         let dark = encode(&picture(1, 1, |_| 0.25), Format::Png, stop).unwrap();
         assert_eq!(dark, encode(&picture(1, 1, |_| 0.5), Format::Png, Preview::default()).unwrap());
         let nothing = encode(&picture(1, 1, |_| f32::NAN), Format::Png, stop).unwrap();

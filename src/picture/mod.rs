@@ -5,13 +5,25 @@
 mod decode;
 mod encode;
 mod error;
+mod exr_header;
 mod limits;
 mod openexr;
 mod srgb;
+mod tonemap;
 
+use std::fmt;
+
+use crate::math::Digest;
 pub use decode::{Encoding, decode};
-pub use encode::{Format, Preview, encode, save, to_srgb, write_whole};
+pub use encode::{Format, Preview, Style, encode, encode_with, save, save_with, to_srgb, write_whole};
 pub use error::PictureError;
+pub use openexr::{ExrCompression, ExrStyle};
+pub use tonemap::Tone;
+
+/// What the header of an OpenEXR file says in words: names and texts, in its order. Nothing, if it is none.
+pub fn exr_attributes(bytes: &[u8]) -> Vec<(String, String)> {
+    if bytes.starts_with(&openexr::MAGIC) { exr_header::strings(bytes) } else { Vec::new() }
+}
 
 /// Planes of 32-bit floats, all of one size. Row 0 is the top.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -32,10 +44,21 @@ impl Picture {
 }
 
 /// One plane of a [`Picture`].
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Default, PartialEq)]
 pub struct Channel {
     /// As EXR files name it: `R`, `nn.X`.
     pub name: String,
     /// Row-major, `width` × `height`.
     pub samples: Vec<f32>,
+}
+
+/// The number of samples and a digest of them.
+impl fmt::Debug for Channel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Channel")
+            .field("name", &self.name)
+            .field("samples", &self.samples.len())
+            .field("digest", &Digest::default().floats(self.samples.iter().copied()).value())
+            .finish()
+    }
 }

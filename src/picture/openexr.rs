@@ -4,10 +4,10 @@ use std::io::Cursor;
 
 use exr::prelude::{
     AnyChannel, AnyChannels, Blocks, Compression, Encoding, Error, FlatSamples, Image, Layer,
-    LayerAttributes, LineOrder, MetaData, ReadChannels, ReadLayers, Text, Vec2, WritableImage, read,
+    LayerAttributes, LineOrder, MetaData, ReadChannels, ReadLayers, Text, Vec2, WritableImage, f16, read,
 };
 
-use super::{Channel, Picture, limits};
+use super::{Channel, Picture, exr_header, limits};
 
 /// The first bytes of every OpenEXR file.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
@@ -15,23 +15,66 @@ pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// None of the compressions grows by more than this: deflate by 1032, and PXR24 by a third more.
 const MAX_EXPANSION: u64 = 2048;
 
-/// All channels as 32-bit floats, ZIP-compressed scan lines in blocks of 16.
+/// How an OpenEXR file holds a picture.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ExrStyle {
+    /// 16 bits a number instead of 32: 11 of them count, and what is above 65504 becomes infinite.
+    pub half: bool,
+    /// How it is made smaller.
+    pub compression: ExrCompression,
+    /// What else its header says: names and texts.
+    pub attributes: Vec<(String, String)>,
+}
+
+/// Ways to make an OpenEXR file smaller; none of them loses anything.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ExrCompression {
+    /// Not at all.
+    None,
+    /// Runs of equal bytes.
+    Rle,
+    /// Deflate, row by row: for compositing.
+    Zips,
+    /// Deflate, sixteen rows at a time.
+    #[default]
+    Zip,
+    /// Wavelets: often the smallest for noisy pictures.
+    Piz,
+}
+
+impl From<ExrCompression> for Compression {
+    fn from(compression: ExrCompression) -> Self {
+        match compression {
+            ExrCompression::None => Self::Uncompressed,
+            ExrCompression::Rle => Self::RLE,
+            ExrCompression::Zips => Self::ZIP1,
+            ExrCompression::Zip => Self::ZIP16,
+            ExrCompression::Piz => Self::PIZ,
+        }
+    }
+}
+
+/// All channels, in scan lines.
 ///
 /// The blocks are compressed one after the other and nothing dates the file: the same picture gives
 /// the same bytes.
-pub(super) fn encode(picture: &Picture) -> Result<Vec<u8>, String> {
+pub(super) fn encode(picture: &Picture, style: &ExrStyle) -> Result<Vec<u8>, String> {
     let mut channels = Vec::with_capacity(picture.channels.len());
     for channel in &picture.channels {
         let name = Text::new_or_none(&channel.name)
             .filter(|_| !channel.name.is_empty())
             .ok_or_else(|| format!("`{}` is no name for a channel of an EXR file", channel.name))?;
-        channels.push(AnyChannel::new(name, FlatSamples::F32(channel.samples.clone())));
+        let samples = match style.half {
+            true => FlatSamples::F16(channel.samples.iter().map(|&x| f16::from_f32(x)).collect()),
+            false => FlatSamples::F32(channel.samples.clone()),
+        };
+        channels.push(AnyChannel::new(name, samples));
     }
     let layer = Layer::new(
         Vec2(picture.width as usize, picture.height as usize),
         LayerAttributes::default(),
         Encoding {
-            compression: Compression::ZIP16,
+            compression: style.compression.into(),
             blocks: Blocks::ScanLines,
             line_order: LineOrder::Increasing,
         },
@@ -39,7 +82,7 @@ pub(super) fn encode(picture: &Picture) -> Result<Vec<u8>, String> {
     );
     let mut file = Cursor::new(Vec::new());
     Image::from_layer(layer).write().non_parallel().to_buffered(&mut file).map_err(|e| e.to_string())?;
-    Ok(file.into_inner())
+    exr_header::insert(&file.into_inner(), &style.attributes)
 }
 
 /// `R G B`, or `Y` three times, of the first layer that has them.
@@ -131,7 +174,7 @@ mod tests {
         let mut original = picture(&["R", "G", "B"]);
         original.channels[0].samples[3] = f32::INFINITY;
         original.channels[1].samples[4] = -0.0;
-        let back = decode(&encode(&original).unwrap()).unwrap();
+        let back = decode(&encode(&original, &ExrStyle::default()).unwrap()).unwrap();
         assert_eq!(back, original);
         assert!(back.channels[1].samples[4].is_sign_negative());
     }
@@ -139,13 +182,16 @@ mod tests {
     #[test]
     fn the_same_picture_gives_the_same_bytes() {
         let picture = picture(&["R", "G", "B", "dd.T", "nn.X", "nn.Y", "nn.Z"]);
-        assert_eq!(encode(&picture).unwrap(), encode(&picture).unwrap());
+        assert_eq!(
+            encode(&picture, &ExrStyle::default()).unwrap(),
+            encode(&picture, &ExrStyle::default()).unwrap()
+        );
     }
 
     #[test]
     fn channels_are_sorted_and_keep_their_names_and_values() {
         let original = picture(&["nn.X", "dd.T", "R", "uv.U"]);
-        let bytes = encode(&original).unwrap();
+        let bytes = encode(&original, &ExrStyle::default()).unwrap();
         let image = read()
             .no_deep_data()
             .largest_resolution_level()
@@ -164,15 +210,15 @@ mod tests {
 
     #[test]
     fn a_grey_file_is_repeated_and_one_without_colours_is_named() {
-        let grey = decode(&encode(&picture(&["Y"])).unwrap()).unwrap();
+        let grey = decode(&encode(&picture(&["Y"]), &ExrStyle::default()).unwrap()).unwrap();
         assert_eq!(grey.channels[0].samples, grey.channels[2].samples);
-        let error = decode(&encode(&picture(&["dd.T"])).unwrap()).unwrap_err();
+        let error = decode(&encode(&picture(&["dd.T"]), &ExrStyle::default()).unwrap()).unwrap_err();
         assert!(error.contains("found dd.T"), "{error}");
     }
 
     #[test]
     fn every_truncation_is_an_error() {
-        let bytes = encode(&picture(&["R", "G", "B"])).unwrap();
+        let bytes = encode(&picture(&["R", "G", "B"]), &ExrStyle::default()).unwrap();
         for length in 0..bytes.len() - 1 {
             assert!(decode(&bytes[..length]).is_err(), "{length} of {}", bytes.len());
         }
@@ -180,7 +226,7 @@ mod tests {
 
     #[test]
     fn an_unknown_compression_is_named() {
-        let mut bytes = encode(&picture(&["R", "G", "B"])).unwrap();
+        let mut bytes = encode(&picture(&["R", "G", "B"]), &ExrStyle::default()).unwrap();
         let name = b"compression\0compression\0";
         let at = bytes.windows(name.len()).position(|window| window == name).unwrap() + name.len() + 4;
         for compression in [10, 11, 200] {
@@ -192,7 +238,7 @@ mod tests {
 
     #[test]
     fn sizes_are_refused_by_the_header_alone() {
-        let mut bytes = encode(&picture(&["R", "G", "B"])).unwrap();
+        let mut bytes = encode(&picture(&["R", "G", "B"]), &ExrStyle::default()).unwrap();
         for name in [&b"dataWindow\0box2i\0"[..], b"displayWindow\0box2i\0"] {
             let at = bytes.windows(name.len()).position(|w| w == name).unwrap() + name.len() + 4;
             bytes[at + 8..at + 12].copy_from_slice(&1_000_000_i32.to_le_bytes());
@@ -203,8 +249,46 @@ mod tests {
     }
 
     #[test]
+    fn half_floats_and_every_compression_are_read_back() {
+        let original = picture(&["R", "G", "B"]);
+        for compression in [
+            ExrCompression::None,
+            ExrCompression::Rle,
+            ExrCompression::Zips,
+            ExrCompression::Zip,
+            ExrCompression::Piz,
+        ] {
+            for half in [false, true] {
+                let style = ExrStyle { half, compression, attributes: Vec::new() };
+                let back = decode(&encode(&original, &style).unwrap()).unwrap();
+                for (a, b) in original.channels.iter().zip(&back.channels) {
+                    let tolerance = if half { 2.0f32.powi(-11) } else { 0.0 };
+                    assert!(
+                        a.samples.iter().zip(&b.samples).all(|(a, b)| (a - b).abs() <= tolerance * a.abs())
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_the_header_says_is_read_back_in_its_order() {
+        let said = [("packlight.seed", "7"), ("a", ""), ("comment", "ä\nb")];
+        let said: Vec<_> = said.map(|(name, value)| (name.to_owned(), value.to_owned())).into();
+        let original = picture(&["R", "G", "B"]);
+        for compression in [ExrCompression::None, ExrCompression::Zip] {
+            let style = ExrStyle { attributes: said.clone(), compression, ..ExrStyle::default() };
+            let bytes = encode(&original, &style).unwrap();
+            assert_eq!(exr_header::strings(&bytes)[..3], said);
+            assert_eq!(decode(&bytes).unwrap(), original);
+        }
+        let style = ExrStyle { attributes: vec![("x".repeat(32), String::new())], ..ExrStyle::default() };
+        assert!(encode(&original, &style).is_err());
+    }
+
+    #[test]
     fn more_than_the_file_can_hold_is_refused_before_it_is_unpacked() {
-        let mut bytes = encode(&picture(&["R", "G", "B"])).unwrap();
+        let mut bytes = encode(&picture(&["R", "G", "B"]), &ExrStyle::default()).unwrap();
         for name in [&b"dataWindow\0box2i\0"[..], b"displayWindow\0box2i\0"] {
             let at = bytes.windows(name.len()).position(|w| w == name).unwrap() + name.len() + 4;
             bytes[at + 8..at + 12].copy_from_slice(&29_999_i32.to_le_bytes());

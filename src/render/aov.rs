@@ -1,4 +1,5 @@
-//! What the camera sees, in place of light: arbitrary output variables, averaged over the pixel.
+//! What the camera sees, in place of light or beside it: arbitrary output variables, averaged over the
+//! pixel.
 
 use super::integrator::{Integrator, Line, Outgoing, Path};
 use super::measure::Counts;
@@ -8,6 +9,28 @@ use crate::compile::Scene;
 use crate::geometry::Ray;
 use crate::scene::{Aov, AovChannel};
 use crate::simd::{LANES, Real, Vector3};
+
+/// Channels of the layers beside a picture, named as compositing programs know them: distance is `Z`.
+pub(super) fn layers(aovs: &[AovChannel]) -> impl Iterator<Item = String> + '_ {
+    let suffixes = |kind| if kind == Aov::Depth { &["Z"] } else { suffixes(kind) };
+    aovs.iter().flat_map(move |c| suffixes(c.kind).iter().map(move |s| format!("{}.{s}", c.name)))
+}
+
+/// Where the layers beside a picture go: behind the channels that the integrator has. They send no rays.
+pub(super) struct Beside<'a, O> {
+    pub(super) out: &'a mut O,
+    pub(super) first: usize,
+}
+
+impl<R: Real, O: Outgoing<R>> Outgoing<R> for Beside<'_, O> {
+    fn add(&mut self, channel: usize, value: R) {
+        self.out.add(self.first + channel, value);
+    }
+
+    fn shadow(&mut self, _: usize, _: R::Mask, _: (Vector3<R>, Vector3<R>, R), _: Vector3<R>) {}
+
+    fn next(&mut self, _: usize, _: R::Mask, _: Line<R>, _: &Path<R>) {}
+}
 
 /// Channels in the order of the description.
 pub(super) struct AovIntegrator {

@@ -4,6 +4,7 @@
 //! asks for, and which rays go on. It says so once, for any number of lanes; the wavefront calls it with
 //! eight and the reference with one. It never sees a queue, a tile or a thread.
 
+use super::aov;
 use super::vertex::Vertex;
 use crate::compile::Scene;
 use crate::math::Sampler;
@@ -84,6 +85,11 @@ pub(super) trait Integrator: Sync {
     /// Names of the picture's channels.
     fn channels(&self) -> Vec<String> {
         ["R", "G", "B"].map(String::from).to_vec()
+    }
+
+    /// [`channels`](Self::channels), and those of the layers beside the picture.
+    fn all_channels(&self, scene: &Scene) -> Vec<String> {
+        self.channels().into_iter().chain(aov::layers(&scene.aovs)).collect()
     }
 
     /// Shadow rays of a vertex, at most.

@@ -32,6 +32,7 @@ pub struct Reading {
 pub fn measure(mut scene: Scene, receiver: Receiver, samples: u64, settings: &Settings) -> Reading {
     scene.film = scene::Film::new(SIDE, SIDE);
     scene.filter = Filter::BOX;
+    scene.aovs.clear();
     let each = samples.div_ceil(u64::from(SIDE * SIDE)).clamp(1, u32::MAX.into());
     scene.sampler.sample_count = each as u32;
     let integrator = integrator(&scene.integrator, receiver);

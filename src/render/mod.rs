@@ -10,15 +10,18 @@ mod camera_rays;
 mod connections;
 mod departure;
 mod direct;
+mod frame;
 mod integrator;
 mod irradiance;
 pub mod measure;
 pub mod meter;
+pub mod part;
 mod path;
 mod pixel_format;
 mod ray_classes;
 mod reference;
 mod rows;
+mod shard;
 mod sort;
 mod statistics;
 mod trace;
@@ -26,31 +29,20 @@ mod vertex;
 mod wavefront;
 mod whitted;
 
-use std::{
-    sync::atomic::{AtomicU64, AtomicUsize, Ordering},
-    time::Instant,
-};
-
+pub use frame::{Coverage, Frame, Plan, Watch, tile_count};
 pub use irradiance::Receiver;
 pub use ray_classes::{Query, RayClass, ray_classes};
+pub use shard::{Shard, ShardBy};
 pub use statistics::{LaneUse, Profile, Statistics};
 
 use bumpalo::Bump;
 
-use crate::{
-    bvh::Traversal,
-    compile::Scene,
-    film::{self, Film, Tile, TileFilm},
-    picture::Picture,
-    scene,
-};
+use crate::{bvh::Traversal, compile::Scene, picture::Picture, scene};
 use integrator::Integrator;
 use irradiance::Irradiance;
+use part::{Difference, Part, differ};
 use path::PathTracer;
 use wavefront::Wavefront;
-
-/// Side of a tile in pixels: a thousand paths, whose columns stay in a core's second-level cache.
-const TILE: u32 = 32;
 
 /// Which of the two pipelines renders. Their pictures are equal to the bit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -132,6 +124,58 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &(dyn Fn(Progress) +
     pixel_format::formatted(scene, settings, rendered)
 }
 
+impl Frame {
+    /// A picture of which nothing is rendered yet.
+    pub fn new(scene: &Scene, plan: Plan) -> Self {
+        struct Channels<'a>(&'a Scene);
+        impl Task for Channels<'_> {
+            type Done = Vec<String>;
+            fn run<I: Integrator>(self, integrator: &I) -> Vec<String> {
+                integrator.all_channels(self.0)
+            }
+        }
+        Self::with_channels(scene, with_integrator(scene, Channels(scene)), plan)
+    }
+
+    /// A picture of which a part is there: the one of these facts, rendered by the same plan. It may have
+    /// been asked for fewer samples.
+    ///
+    /// # Errors
+    /// The [`Difference`] by which the part is one of another picture.
+    pub fn resume(
+        scene: &Scene,
+        plan: Plan,
+        facts: &[(String, String)],
+        part: Part,
+    ) -> Result<Self, Difference> {
+        let mut frame = Self::new(scene, plan);
+        let ours = frame.part("", facts);
+        ours.same_picture(&part)?;
+        differ("shard", part.plan.shard, plan.shard)?;
+        if part.plan.shard.by != plan.shard.by || plan.shard != Shard::WHOLE {
+            differ("number of samples", part.samples, ours.samples)?;
+        }
+        if part.tiles.iter().any(|tile| tile.film.samples.end > ours.samples) {
+            differ("number of samples", part.samples, ours.samples)?;
+        }
+        frame.adopt(part);
+        Ok(frame)
+    }
+
+    /// Renders what is missing, on the current rayon pool, until it is stopped.
+    pub fn render(&self, scene: &Scene, settings: &Settings, watch: &Watch<'_>) {
+        struct Render<'a>(&'a Frame, &'a Scene, &'a Settings, &'a Watch<'a>);
+        impl Task for Render<'_> {
+            type Done = ();
+            fn run<I: Integrator>(self, integrator: &I) {
+                let Self(frame, scene, settings, watch) = self;
+                frame.run(scene, integrator, settings, watch);
+            }
+        }
+        with_integrator(scene, Render(self, scene, settings, watch));
+    }
+}
+
 /// What one sample of the pixel (x, y) brings: names of channels, and values that may be NaN or infinite.
 /// A pixel outside of the film has samples too.
 pub fn replay(scene: &Scene, settings: &Settings, pixel: (u32, u32), sample: u32) -> Vec<(String, f32)> {
@@ -150,7 +194,7 @@ pub fn replay(scene: &Scene, settings: &Settings, pixel: (u32, u32), sample: u32
                     reference::sample(scene, integrator, pixel, sample, &mut traversal, &mut statistics).0
                 }
             };
-            integrator.channels().into_iter().zip(values).collect()
+            integrator.all_channels(scene).into_iter().zip(values).collect()
         }
     }
     with_integrator(scene, Replay(scene, settings, pixel, sample))
@@ -160,62 +204,13 @@ fn paths(max_depth: Option<u32>, rr_depth: u32, hide_emitters: bool) -> PathTrac
     PathTracer { max_depth: max_depth.unwrap_or(u32::MAX), rr_depth, hide_emitters }
 }
 
-/// What is rendered of the film, in its coordinates.
-fn tiles(scene: &Scene) -> Vec<Tile> {
-    let window = scene.film.window();
-    let mut tiles = film::tiles(window.width, window.height, TILE);
-    for tile in &mut tiles {
-        tile.x += window.x;
-        tile.y += window.y;
-    }
-    tiles
-}
-
 fn render_with<I: Integrator>(
     scene: &Scene,
     integrator: &I,
     settings: &Settings,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Rendered {
-    let start = Instant::now();
-    let window = scene.film.window();
-    let total = u64::from(window.width) * u64::from(window.height) * u64::from(scene.sampler.sample_count);
-    let done = AtomicU64::new(0);
-    let sample_done = |tile: &Tile| {
-        let pixels = tile.len() as u64;
-        progress(Progress { done: done.fetch_add(pixels, Ordering::Relaxed) + pixels, total });
-    };
-    let tiles = tiles(scene);
-    let next = AtomicUsize::new(0);
-    // Each thread takes the next tile, and keeps its memory from tile to tile.
-    let thread = |_: rayon::BroadcastContext<'_>| -> Vec<(usize, TileFilm, Statistics)> {
-        let arena = Bump::new();
-        let mut wavefront = Wavefront::new(&arena, scene, integrator, settings.sort);
-        let mut finished = Vec::new();
-        loop {
-            let place = next.fetch_add(1, Ordering::Relaxed);
-            let Some(tile) = tiles.get(place) else { return finished };
-            let (mut statistics, sample_done) = (Statistics::default(), || sample_done(tile));
-            let film = match settings.backend {
-                Backend::Packet => wavefront.render(tile, &mut statistics, sample_done),
-                Backend::Scalar => reference::render(scene, integrator, tile, &mut statistics, sample_done),
-            };
-            statistics.invalid_samples = film.invalid;
-            statistics.first_invalid = film
-                .first_invalid
-                .map(|(pixel, sample)| (tile.x + pixel % tile.width, tile.y + pixel / tile.width, sample));
-            finished.push((place, film, statistics));
-        }
-    };
-    let finished = rayon::broadcast(thread);
-    let mut film = Film::new(window.width, window.height, &integrator.channels());
-    let mut statistics = Statistics::default();
-    for (place, tile_film, tile_statistics) in finished.iter().flatten() {
-        let tile = &tiles[*place];
-        let place = Tile { x: tile.x - window.x, y: tile.y - window.y, ..*tile };
-        film.place(&place, tile_film);
-        statistics.merge(tile_statistics);
-    }
-    statistics.time = start.elapsed();
-    Rendered { picture: film.develop(), statistics }
+    let frame = Frame::with_channels(scene, integrator.all_channels(scene), Plan::default());
+    frame.run(scene, integrator, settings, &Watch { progress, stop: &|| false });
+    frame.develop()
 }

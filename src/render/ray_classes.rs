@@ -87,7 +87,7 @@ impl Point {
 
 /// Camera rays and the keys of their pixels.
 fn primary(scene: &Scene) -> (Vec<Ray32>, Vec<u32>) {
-    let tiles = super::tiles(scene);
+    let tiles = super::frame::tiles(scene.film.window());
     let pixels = tiles
         .iter()
         .flat_map(|tile| camera_rays::morton(tile).into_iter().map(move |(x, y)| (tile.x + x, tile.y + y)));

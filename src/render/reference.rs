@@ -6,13 +6,15 @@
 
 use std::collections::VecDeque;
 
+use super::aov::{AovIntegrator, Beside};
 use super::camera_rays;
+use super::frame::Visit;
 use super::integrator::{Integrator, Outgoing, Path};
 use super::statistics::Statistics;
 use super::vertex::Vertex;
 use crate::bvh::Traversal;
 use crate::compile::Scene;
-use crate::film::{Tile, TileFilm};
+use crate::film::Tile;
 use crate::geometry::{PrimitiveId, Ray};
 use crate::simd::Vector3;
 
@@ -21,27 +23,22 @@ type Flight = (Ray, Path<f32>);
 /// (org, dir, `t_far`).
 type Segment = (Vector3<f32>, Vector3<f32>, f32);
 
-/// Renders all samples of a tile.
-pub(super) fn render<I: Integrator>(
-    scene: &Scene,
-    integrator: &I,
-    tile: &Tile,
-    statistics: &mut Statistics,
-    sample_done: impl Fn(),
-) -> TileFilm {
-    let channels = integrator.channels().len();
-    let mut film = TileFilm::new(tile.len(), channels);
+/// Renders samples of a tile, for as long as the visit has any.
+pub(super) fn render<I: Integrator>(scene: &Scene, integrator: &I, tile: &Tile, visit: &Visit<'_>) {
     let mut traversal = Traversal::new(());
-    for sample in 0..scene.sampler.sample_count {
-        for pixel in 0..tile.len() as u32 {
+    while let Some(sample) = visit.next() {
+        let mut statistics = Statistics::default();
+        let pixel = |pixel: u32| {
             let place = (tile.x + pixel % tile.width, tile.y + pixel / tile.width);
-            let (sums, weight) = self::sample(scene, integrator, place, sample, &mut traversal, statistics);
-            film.add(pixel as usize, sample, weight, |c| sums[c]);
-        }
-        statistics.samples += tile.len() as u64;
-        sample_done();
+            self::sample(scene, integrator, place, sample, &mut traversal, &mut statistics)
+        };
+        let pixels: Vec<_> = (0..tile.len() as u32).map(pixel).collect();
+        visit.finish(statistics, |film| {
+            for (pixel, (sums, weight)) in pixels.iter().enumerate() {
+                film.add(pixel, *weight, |c| sums[c]);
+            }
+        });
     }
-    film
 }
 
 /// What one sample of the pixel (x, y) brings to each channel, finite or not, and what it counts.
@@ -53,7 +50,7 @@ pub(super) fn sample<I: Integrator>(
     traversal: &mut Traversal,
     statistics: &mut Statistics,
 ) -> (Vec<f32>, f32) {
-    let channels = integrator.channels().len();
+    let channels = integrator.all_channels(scene).len();
     let path = Path::start(camera_rays::keys::<f32>(scene, x, y), sample);
     let (ray, weight) = camera_rays::rays::<f32>(scene, x, y, &path);
     let mut sums = vec![0.0; channels];
@@ -63,7 +60,8 @@ pub(super) fn sample<I: Integrator>(
         flights.extend(said.next.into_iter().flatten());
         for (c, sum) in sums.iter_mut().enumerate() {
             let mut value = said.added[c];
-            for (segment, radiance) in &said.shadows {
+            // Only light comes by shadow rays, and not what the camera sees beside it.
+            for (segment, radiance) in said.shadows.iter().filter(|_| c < 3) {
                 value += if segment.is_some() { [radiance.x, radiance.y, radiance.z][c] } else { 0.0 };
             }
             *sum += value;
@@ -141,9 +139,25 @@ fn arrive<I: Integrator>(
     let line = (ray.org.into(), ray.dir.into());
     if hit.primitive == PrimitiveId::NONE {
         integrator.miss(scene, path, line, said);
+        beside(scene, integrator, path, said, |aovs, out| aovs.miss(scene, path, line, out));
         return;
     }
     let material = scene.material(hit.primitive, hit.u);
     let vertex = Vertex::new(scene, *path, line, (hit.t, hit.u, hit.v), hit.primitive.0, material);
     integrator.shade(scene, &vertex, said);
+    beside(scene, integrator, path, said, |aovs, out| aovs.shade(scene, &vertex, out));
+}
+
+/// What the camera sees besides.
+fn beside<I: Integrator>(
+    scene: &Scene,
+    integrator: &I,
+    path: &Path<f32>,
+    said: &mut Said,
+    say: impl FnOnce(&AovIntegrator, &mut Beside<'_, Said>),
+) {
+    if path.depth == 0 && !scene.aovs.is_empty() {
+        let aovs = AovIntegrator { channels: scene.aovs.clone() };
+        say(&aovs, &mut Beside { out: said, first: integrator.channels().len() });
+    }
 }

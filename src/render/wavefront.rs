@@ -8,8 +8,10 @@ use std::time::Instant;
 
 use bumpalo::{Bump, collections::Vec as BumpVec};
 
+use super::aov::{AovIntegrator, Beside};
 use super::camera_rays::{self, Pixels};
 use super::connections::Connections;
+use super::frame::Visit;
 use super::integrator::{Integrator, Outgoing, Path};
 use super::rows::{Hits, Packet, Paths, fill, reserve};
 use super::sort::{Sorter, for_each_unsorted_group};
@@ -18,7 +20,7 @@ use super::trace;
 use super::vertex::Vertex;
 use crate::bvh::Tracer;
 use crate::compile::Scene;
-use crate::film::{Tile, TileFilm};
+use crate::film::Tile;
 use crate::geometry::PrimitiveId;
 use crate::material::MaterialId;
 use crate::simd::{Bits, LANES, Mask, Mask8, Real, Vec3x8, f32x8, u32x8};
@@ -27,6 +29,9 @@ use crate::simd::{Bits, LANES, Mask, Mask8, Real, Vec3x8, f32x8, u32x8};
 pub(super) struct Wavefront<'a, I> {
     scene: &'a Scene,
     integrator: &'a I,
+    /// Channels of the integrator, before those of what the camera sees besides.
+    lit: usize,
+    beside: Option<AovIntegrator>,
     sort: bool,
     channels: usize,
     tracer: Tracer,
@@ -47,7 +52,7 @@ type Quad = [f32; 4];
 
 /// What the groups of a round have said, by slot.
 struct Outputs<'a> {
-    /// A pixel's channels are so many quads, the last one padded.
+    /// The channels of this round are so many quads, the last one padded.
     quads: usize,
     /// What the vertex adds, four channels at a time, slot after slot.
     added: BumpVec<'a, Quad>,
@@ -60,10 +65,12 @@ struct Outputs<'a> {
 
 impl<'a, I: Integrator> Wavefront<'a, I> {
     pub(super) fn new(arena: &'a Bump, scene: &'a Scene, integrator: &'a I, sort: bool) -> Self {
-        let channels = integrator.channels().len();
+        let (lit, channels) = (integrator.channels().len(), integrator.all_channels(scene).len());
         Self {
             scene,
             integrator,
+            lit,
+            beside: (channels > lit).then(|| AovIntegrator { channels: scene.aovs.clone() }),
             sort,
             channels,
             tracer: Tracer::new(()),
@@ -84,31 +91,33 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
         }
     }
 
-    /// All samples of a tile.
-    pub(super) fn render(
-        &mut self,
-        tile: &Tile,
-        statistics: &mut Statistics,
-        sample_done: impl Fn(),
-    ) -> TileFilm {
+    /// Samples of a tile, for as long as the visit has any.
+    pub(super) fn render(&mut self, tile: &Tile, visit: &Visit<'_>) {
+        let Some(mut sample) = visit.next() else { return };
         let pixels = Pixels::new(self.scene, tile);
-        let mut film = TileFilm::new(tile.len(), self.channels);
-        for sample in 0..self.scene.sampler.sample_count {
+        loop {
+            let mut statistics = Statistics::default();
             let start = Instant::now();
             self.start(&pixels, sample);
             statistics.spend(Stage::Shade, start);
-            self.run(sample, statistics);
-            let start = Instant::now();
-            for (place, &pixel) in pixels.places.iter().enumerate() {
-                let weight = self.weights[place / LANES].lane(place % LANES);
-                let values = &self.sums[place * self.out.quads..];
-                film.add(pixel as usize, sample, weight, |c| values[c / 4][c % 4]);
+            self.run(sample, &mut statistics);
+            visit.finish(statistics, |film| {
+                for (place, &pixel) in pixels.places.iter().enumerate() {
+                    let weight = self.weights[place / LANES].lane(place % LANES);
+                    let values = &self.sums[place * self.quads()..];
+                    film.add(pixel as usize, weight, |c| values[c / 4][c % 4]);
+                }
+            });
+            match visit.next() {
+                Some(next) => sample = next,
+                None => return,
             }
-            statistics.samples += pixels.places.len() as u64;
-            sample_done();
-            statistics.spend(Stage::Add, start);
         }
-        film
+    }
+
+    /// Of all channels of a pixel.
+    fn quads(&self) -> usize {
+        self.channels.div_ceil(4)
     }
 
     /// What one sample of the pixel (x, y) brings to each channel, finite or not.
@@ -123,7 +132,8 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     fn start(&mut self, pixels: &Pixels, sample: u32) {
         let len = pixels.places.len();
         self.sums.clear();
-        self.sums.resize(len * self.out.quads, [0.0; 4]);
+        let quads = self.quads();
+        self.sums.resize(len * quads, [0.0; 4]);
         self.weights.clear();
         self.paths.resize(len);
         let slots = u32x8::from_fn(|i| i as u32);
@@ -141,6 +151,8 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     fn run(&mut self, sample: u32, statistics: &mut Statistics) {
         let mut depth = 0;
         while self.paths.len > 0 {
+            // What the camera sees besides is said in the first round.
+            self.out.quads = if depth == 0 { self.quads() } else { self.lit.div_ceil(4) };
             self.out.clear(self.paths.len, self.integrator.shadow_rays(self.scene));
             if depth == 0 && self.integrator.begins() {
                 self.begin(sample, statistics);
@@ -179,7 +191,8 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
 
     fn shade(&mut self, depth: u32, sample: u32, statistics: &mut Statistics) {
         let start = Instant::now();
-        let Self { scene, integrator, paths, hits, keys, sorter, out, .. } = self;
+        let Self { scene, integrator, lit, beside, paths, hits, keys, sorter, out, .. } = self;
+        let beside = beside.as_ref().filter(|_| depth == 0);
         let miss = scene.materials.len() as u32;
         keys.clear();
         keys.extend((0..paths.len).map(|slot| match hits.primitive(slot) {
@@ -198,11 +211,17 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             let mut group = Group { slots: at, count: slots.len(), pixel, out };
             if key == miss {
                 integrator.miss(scene, &path, (org, dir), &mut group);
+                if let Some(beside) = beside {
+                    beside.miss(scene, &path, (org, dir), &mut Beside { out: &mut group, first: *lit });
+                }
                 return;
             }
             let (tuv, primitive) = hits.packet(&at);
             let vertex = Vertex::new(scene, path, (org, dir), tuv, primitive, MaterialId(key));
             integrator.shade(scene, &vertex, &mut group);
+            if let Some(beside) = beside {
+                beside.shade(scene, &vertex, &mut Beside { out: &mut group, first: *lit });
+            }
         };
         if self.sort {
             sorter.for_each_group(group);
@@ -222,11 +241,12 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
 
     /// Adds each vertex to its pixel: vertices in the order of slots, light in the order of its index.
     fn add(&mut self) {
+        let of_all = self.quads();
         let Self { paths, out: Outputs { quads, added, connections, .. }, sums, .. } = self;
         let quads = *quads;
         connections.for_each(|slot, channel, light| added[slot * quads][channel] += light);
         for (slot, values) in added.chunks_exact(quads).enumerate() {
-            let sums = &mut sums[paths.pixel(slot) * quads..][..quads];
+            let sums = &mut sums[paths.pixel(slot) * of_all..][..quads];
             for (sums, values) in sums.iter_mut().zip(values) {
                 *sums = std::array::from_fn(|c| sums[c] + values[c]);
             }

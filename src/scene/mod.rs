@@ -1,10 +1,12 @@
-//! What a scene file says: plain public data, no behaviour beyond defaults.
+//! What a scene file says: plain public data, no behaviour beyond defaults and a digest.
 //!
 //! `load/` fills a [`SceneDescription`], `compile/` turns it into columns and a tree. Units are SI,
 //! radiometric quantities are linear sRGB triples, angles are radians, world space is right-handed.
 //! Everything in here has passed the door: numbers are finite, indices are in range, files were read.
 
+mod doubts;
 mod emitter;
+mod fingerprint;
 mod integrator;
 mod material;
 mod sensor;
@@ -42,4 +44,6 @@ pub struct SceneDescription {
     pub materials: Vec<Material>,
     /// Lights that are not shapes.
     pub emitters: Vec<Emitter>,
+    /// What the camera sees besides, as layers of the picture.
+    pub aovs: Vec<AovChannel>,
 }

@@ -1,10 +1,11 @@
 //! Things that can be hit.
 
-use std::sync::Arc;
+use std::{fmt, sync::Arc};
 
 use glam::{DAffine3, DVec3, Vec2, Vec3};
 
 use super::{MaterialIndex, Rgb};
+use crate::math::Digest;
 
 /// A surface in the world.
 #[derive(Clone, Debug)]
@@ -81,7 +82,7 @@ pub enum Geometry {
 }
 
 /// Indexed triangles in local space. Every index is in range; every coordinate is finite.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Default, PartialEq)]
 pub struct Mesh {
     /// Vertex positions.
     pub positions: Vec<Vec3>,
@@ -98,7 +99,7 @@ pub struct Mesh {
 }
 
 /// Values on a mesh.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Attribute {
     /// `vertex_…` or `face_…`.
     pub name: String,
@@ -115,4 +116,36 @@ pub enum Per {
     Vertex,
     /// One a triangle.
     Face,
+}
+
+/// A digest of the values.
+impl fmt::Debug for Attribute {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, per, values } = self;
+        let digest = Digest::default().floats(values.iter().flat_map(Vec3::to_array));
+        f.debug_struct("Attribute")
+            .field("name", name)
+            .field("per", per)
+            .field("values", &values.len())
+            .field("digest", &digest.value())
+            .finish()
+    }
+}
+
+/// Sizes, and a digest of the numbers, of which there may be millions.
+impl fmt::Debug for Mesh {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { positions, normals, uvs, triangles, attributes } = self;
+        let vectors = positions.iter().chain(normals).flat_map(Vec3::to_array);
+        let mut digest = Digest::default().floats(vectors).floats(uvs.iter().flat_map(Vec2::to_array));
+        triangles.iter().flatten().for_each(|&index| digest.word(index));
+        f.debug_struct("Mesh")
+            .field("positions", &positions.len())
+            .field("normals", &normals.len())
+            .field("uvs", &uvs.len())
+            .field("triangles", &triangles.len())
+            .field("digest", &digest.value())
+            .field("attributes", attributes)
+            .finish()
+    }
 }

@@ -92,6 +92,14 @@ pub fn missing() -> impl Iterator<Item = &'static str> {
     FEATURES.iter().filter(|feature| feature.compiled && !present(feature)).map(|feature| feature.name)
 }
 
+/// What this processor and its operating system offer beyond the instructions that every x86-64 has, as far
+/// as it makes lanes faster: whether it was compiled or not.
+pub fn offered() -> Vec<&'static str> {
+    let worth_saying = ["sse4.2", "avx2", "fma", "avx512f"];
+    let there = FEATURES.iter().filter(|feature| worth_saying.contains(&feature.name) && present(feature));
+    there.map(|feature| feature.name).collect()
+}
+
 /// The lanes that were compiled, in a line: `f32x8 in one AVX register (avx2, fma, avx512f)`.
 pub fn compiled() -> String {
     let registers = if cfg!(target_feature = "avx") {

@@ -1,0 +1,115 @@
+//! `--checkpoint` and `--resume`: what is rendered is not lost.
+
+use std::{
+    path::PathBuf,
+    sync::{Condvar, Mutex, PoisonError},
+    time::Duration,
+};
+
+use clap::Args;
+
+use crate::{
+    cli::{
+        duration,
+        failure::{Failure, warn_of},
+        output::check_writable,
+        part_file,
+    },
+    compile::Scene,
+    picture::{ExrCompression, ExrStyle, Style},
+    render::{Frame, Plan, part::Part},
+};
+
+const KEEP: &str = "Checkpoints (what is continued ends in the same bits as what was never stopped)";
+
+/// The options.
+#[derive(Clone, Debug, Args)]
+pub(super) struct KeepOptions {
+    /// File that holds, now and then and at the end, what is there; an .exr that can be looked at
+    #[arg(long, value_name = "FILE", help_heading = KEEP)]
+    pub(super) checkpoint: Option<PathBuf>,
+
+    /// Time from one checkpoint to the next
+    #[arg(long, value_name = "TIME", help_heading = KEEP, default_value = "60s", value_parser = duration::parse,
+          requires = "checkpoint")]
+    every: Duration,
+
+    /// Go on from a checkpoint, a shard or a picture that was stopped; if it is the --checkpoint and not
+    /// there yet, from the beginning
+    #[arg(long, value_name = "FILE", help_heading = KEEP)]
+    resume: Option<PathBuf>,
+}
+
+/// What a part of this render is called, and by what it is told from others.
+pub(super) struct Name<'a> {
+    pub(super) scene: &'a str,
+    pub(super) facts: &'a [(String, String)],
+}
+
+impl Name<'_> {
+    /// What there is now.
+    pub(super) fn part(&self, frame: &Frame) -> Part {
+        frame.part(self.scene, self.facts)
+    }
+}
+
+impl KeepOptions {
+    /// Before anything is rendered: can the checkpoint be written?
+    pub(super) fn check(&self) -> Result<(), Failure> {
+        self.checkpoint.as_deref().map_or(Ok(()), check_writable)
+    }
+
+    /// A frame with what is there already.
+    pub(super) fn begin(&self, scene: &Scene, plan: Plan, name: &Name<'_>) -> Result<Frame, Failure> {
+        let Some(path) = &self.resume else { return Ok(Frame::new(scene, plan)) };
+        if self.checkpoint.as_ref() == Some(path) && !path.exists() {
+            return Ok(Frame::new(scene, plan));
+        }
+        let part = part_file::load(path)?;
+        Frame::resume(scene, plan, name.facts, part).map_err(|difference| {
+            Failure::Sentence(format!("{} is of another render: {difference}", path.display()))
+        })
+    }
+
+    /// Does `work`, and writes checkpoints meanwhile and afterwards.
+    pub(super) fn keeping(&self, frame: &Frame, name: &Name<'_>, work: impl FnOnce()) {
+        let Some(path) = &self.checkpoint else { return work() };
+        let write = || part_file::save(&name.part(frame), path, &quick());
+        let done = (Mutex::new(false), Condvar::new());
+        std::thread::scope(|scope| {
+            let keeper = scope.spawn(|| {
+                let mut warned = false;
+                while !wait(&done, self.every) {
+                    match write() {
+                        Ok(()) => warned = false,
+                        // Rendering goes on: the disk may have room again next time.
+                        Err(error) if !warned => {
+                            warned = true;
+                            warn_of(format!("the checkpoint could not be written: {error}"));
+                        }
+                        Err(_) => {}
+                    }
+                }
+            });
+            work();
+            *done.0.lock().unwrap_or_else(PoisonError::into_inner) = true;
+            done.1.notify_all();
+            drop(keeper.join());
+        });
+        if let Err(error) = write() {
+            warn_of(format!("the last checkpoint could not be written: {error}"));
+        }
+    }
+}
+
+/// Written often, read seldom.
+pub(super) fn quick() -> Style {
+    Style { exr: ExrStyle { compression: ExrCompression::None, ..ExrStyle::default() }, ..Style::default() }
+}
+
+/// Waits for the end of the work, or for so long. Is it the end?
+fn wait((done, changed): &(Mutex<bool>, Condvar), time: Duration) -> bool {
+    let guard = done.lock().unwrap_or_else(PoisonError::into_inner);
+    let waited = changed.wait_timeout_while(guard, time, |done| !*done);
+    *waited.unwrap_or_else(PoisonError::into_inner).0
+}

@@ -1,0 +1,295 @@
+//! A picture while it is being made: what threads add to, and what anybody may look at meanwhile.
+//!
+//! A tile is behind a lock, which a thread takes for as long as it adds one sample. In between, whoever wants
+//! to keep what there is copies it, tile by tile; tiles may have different numbers of samples then, each of
+//! them whole. Threads go through the picture in passes that end at 1, 2, 4, 8 … samples, so that a picture
+//! that is stopped early has no holes, and no tile has less than half the samples of another.
+
+use std::{
+    sync::{
+        Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicU64, AtomicUsize, Ordering},
+    },
+    time::{Duration, Instant},
+};
+
+use bumpalo::Bump;
+
+use super::{
+    Backend, Progress, Rendered, Settings,
+    integrator::Integrator,
+    part::{Part, PartTile},
+    reference,
+    shard::Shard,
+    statistics::{Stage, Statistics},
+    wavefront::Wavefront,
+};
+use crate::{
+    compile::Scene,
+    film::{self, Film, Tile, TileFilm, spread::Spread},
+    scene::Crop,
+};
+
+/// Side of a tile in pixels: a thousand paths, whose columns stay in a core's second-level cache.
+const TILE: u32 = 32;
+
+/// What is to be rendered of a scene, and how well.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Plan {
+    /// Which part of it.
+    pub shard: Shard,
+    /// A tile is done when its relative error is as small as this; `None` takes all samples. See
+    /// [`Spread`].
+    pub target_error: Option<f32>,
+}
+
+/// Who watches a render.
+#[derive(Clone, Copy)]
+pub struct Watch<'a> {
+    /// Is called from the threads, now and then.
+    pub progress: &'a (dyn Fn(Progress) + Sync),
+    /// Is asked before each sample of each tile; after a `true` nothing more is begun.
+    pub stop: &'a (dyn Fn() -> bool + Sync),
+}
+
+/// How much of a frame is there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Coverage {
+    /// Samples of the pixels that have the fewest.
+    pub least: u32,
+    /// Samples of the pixels that have the most.
+    pub most: u32,
+    /// Is nothing left to do?
+    pub complete: bool,
+}
+
+/// A picture that is being rendered.
+#[derive(Debug)]
+pub struct Frame {
+    plan: Plan,
+    /// Samples a pixel that are asked for.
+    samples: u32,
+    window: Crop,
+    channels: Vec<String>,
+    cells: Vec<Cell>,
+    /// What was spent on it before it was resumed.
+    earlier: Duration,
+    started: Mutex<Option<Instant>>,
+}
+
+/// A tile of the plan.
+#[derive(Debug)]
+struct Cell {
+    /// Among all tiles of the window, row by row.
+    number: u32,
+    /// In coordinates of the film.
+    tile: Tile,
+    state: Mutex<State>,
+}
+
+#[derive(Clone, Debug)]
+struct State {
+    film: TileFilm,
+    statistics: Statistics,
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    // A thread that panics takes the whole render with it; what is behind the lock is whole nevertheless.
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Tiles of a part of a film, in the film's coordinates.
+pub(super) fn tiles(window: Crop) -> Vec<Tile> {
+    let mut tiles = film::tiles(window.width, window.height, TILE);
+    for tile in &mut tiles {
+        tile.x += window.x;
+        tile.y += window.y;
+    }
+    tiles
+}
+
+impl Frame {
+    /// Nothing yet of a plan.
+    pub(super) fn with_channels(scene: &Scene, channels: Vec<String>, plan: Plan) -> Self {
+        let window = scene.film.window();
+        let samples = scene.sampler.sample_count;
+        let first = plan.shard.samples(samples).start;
+        let cell = |(number, tile): (u32, Tile)| {
+            let mut film = TileFilm::new(tile.len(), channels.len(), first);
+            film.spread = plan.target_error.map(|_| Spread::new(tile.len()));
+            Cell { number, tile, state: Mutex::new(State { film, statistics: Statistics::default() }) }
+        };
+        let tiles = (0..).zip(tiles(window)).filter(|(number, _)| plan.shard.has_tile(*number));
+        let cells = tiles.map(cell).collect();
+        Self { plan, samples, window, channels, cells, earlier: Duration::ZERO, started: Mutex::new(None) }
+    }
+
+    /// Takes over what a part has, which belongs here.
+    pub(super) fn adopt(&mut self, part: Part) {
+        self.earlier = part.time;
+        for PartTile { number, film, statistics } in part.tiles {
+            if let Ok(at) = self.cells.binary_search_by_key(&number, |cell| cell.number) {
+                self.cells[at].state = Mutex::new(State { film, statistics });
+            }
+        }
+    }
+
+    /// Renders what is missing, on the current rayon pool.
+    pub(super) fn run<I: Integrator>(
+        &self,
+        scene: &Scene,
+        integrator: &I,
+        settings: &Settings,
+        watch: &Watch<'_>,
+    ) {
+        *lock(&self.started) = Some(Instant::now());
+        let range = self.plan.shard.samples(self.samples);
+        let pixels = |cell: &Cell| cell.tile.len() as u64;
+        let total = self.cells.iter().map(pixels).sum::<u64>() * range.len() as u64;
+        let there = |cell: &Cell| pixels(cell) * lock(&cell.state).film.samples.len() as u64;
+        let done = AtomicU64::new(self.cells.iter().map(there).sum());
+        for end in passes(range.end - range.start) {
+            let until = range.start + end;
+            let next = AtomicUsize::new(0);
+            // Each thread takes the next tile, and keeps its memory from tile to tile.
+            rayon::broadcast(|_| {
+                let arena = Bump::new();
+                let mut wavefront = Wavefront::new(&arena, scene, integrator, settings.sort);
+                while let Some(cell) = self.cells.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let visit = Visit { cell, frame: self, until, total, done: &done, watch };
+                    match settings.backend {
+                        Backend::Packet => wavefront.render(&cell.tile, &visit),
+                        Backend::Scalar => reference::render(scene, integrator, &cell.tile, &visit),
+                    }
+                }
+            });
+        }
+    }
+
+    /// What there is now, from whatever thread.
+    pub fn part(&self, scene: &str, facts: &[(String, String)]) -> Part {
+        let tile = |cell: &Cell| {
+            let State { film, statistics } = lock(&cell.state).clone();
+            PartTile { number: cell.number, film, statistics }
+        };
+        Part {
+            facts: facts.to_vec(),
+            scene: scene.to_owned(),
+            channels: self.channels.clone(),
+            width: self.window.width,
+            height: self.window.height,
+            samples: self.samples,
+            plan: self.plan,
+            time: self.time(),
+            tiles: self.cells.iter().map(tile).collect(),
+        }
+    }
+
+    fn time(&self) -> Duration {
+        self.earlier + lock(&self.started).map_or(Duration::ZERO, |start| start.elapsed())
+    }
+
+    /// Samples a pixel that are asked for.
+    pub fn samples(&self) -> u32 {
+        self.samples
+    }
+
+    /// What is to be rendered.
+    pub fn plan(&self) -> Plan {
+        self.plan
+    }
+
+    /// How much of it is there.
+    pub fn coverage(&self) -> Coverage {
+        let mut coverage = Coverage { least: u32::MAX, most: 0, complete: true };
+        let range = self.plan.shard.samples(self.samples);
+        for cell in &self.cells {
+            let film = &lock(&cell.state).film;
+            let count = film.samples.len() as u32;
+            coverage.least = coverage.least.min(count);
+            coverage.most = coverage.most.max(count);
+            coverage.complete &= film.is_done(range.end, self.plan.target_error);
+        }
+        coverage.least = coverage.least.min(coverage.most);
+        coverage
+    }
+
+    /// The picture as it is now, and what it took.
+    pub fn develop(&self) -> Rendered {
+        let mut film = Film::new(self.window.width, self.window.height, &self.channels);
+        let mut statistics = Statistics::default();
+        for cell in &self.cells {
+            let state = lock(&cell.state);
+            let Tile { x, y, .. } = cell.tile;
+            let place = Tile { x: x - self.window.x, y: y - self.window.y, ..cell.tile };
+            film.place(&place, &state.film.total());
+            statistics.merge(&state.statistics);
+        }
+        statistics.time = self.time();
+        Rendered { picture: film.develop(), statistics }
+    }
+}
+
+/// Into how many tiles a part of a film is divided.
+pub fn tile_count(window: Crop) -> usize {
+    window.width.div_ceil(TILE) as usize * window.height.div_ceil(TILE) as usize
+}
+
+/// Where passes over so many samples end.
+fn passes(samples: u32) -> impl Iterator<Item = u32> {
+    let ends = (0..32).map(|power| 1u32 << power).take_while(move |&end| end < samples);
+    ends.chain((samples > 0).then_some(samples))
+}
+
+/// A thread at a tile, for one pass.
+pub(super) struct Visit<'a> {
+    cell: &'a Cell,
+    frame: &'a Frame,
+    until: u32,
+    total: u64,
+    done: &'a AtomicU64,
+    watch: &'a Watch<'a>,
+}
+
+impl Visit<'_> {
+    /// The next sample that the tile needs, if this pass has one for it.
+    pub(super) fn next(&self) -> Option<u32> {
+        let film = &lock(&self.cell.state).film;
+        let done = film.is_done(self.until, self.frame.plan.target_error);
+        (!done && !(self.watch.stop)()).then_some(film.samples.end)
+    }
+
+    /// Adds one sample of every pixel, and what it took.
+    pub(super) fn finish(&self, mut statistics: Statistics, add: impl FnOnce(&mut TileFilm)) {
+        let start = Instant::now();
+        let pixels = self.cell.tile.len() as u64;
+        let mut state = lock(&self.cell.state);
+        add(&mut state.film);
+        state.film.finish_sample();
+        statistics.spend(Stage::Add, start);
+        state.statistics.merge(&statistics);
+        state.statistics.samples += pixels;
+        state.statistics.invalid_samples = state.film.invalid;
+        let Tile { x, y, width, .. } = self.cell.tile;
+        state.statistics.first_invalid =
+            state.film.first_invalid.map(|(pixel, sample)| (x + pixel % width, y + pixel / width, sample));
+        drop(state);
+        let done = self.done.fetch_add(pixels, Ordering::Relaxed) + pixels;
+        (self.watch.progress)(Progress { done, total: self.total });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn passes_double_and_end_where_they_should() {
+        let ends = |samples| passes(samples).collect::<Vec<_>>();
+        assert_eq!(ends(0), [0; 0]);
+        assert_eq!(ends(1), [1]);
+        assert_eq!(ends(3), [1, 2, 3]);
+        assert_eq!(ends(16), [1, 2, 4, 8, 16]);
+        assert_eq!(ends(u32::MAX).len(), 33);
+    }
+}

@@ -1,0 +1,393 @@
+//! Checkpoints, shards and renders that were stopped, as a shell sees them: whatever is cut, killed,
+//! resumed and merged ends in the bytes of what was never interrupted.
+
+#![allow(missing_docs)]
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Child, Command, Output, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+
+const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/cornell.xml");
+
+/// Not a multiple of a block, several tiles, some of them partly empty.
+const PICTURE: [&str; 6] = ["--width", "70", "--spp", "40", "--threads", "2"];
+
+fn command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_packlight"));
+    command.args(arguments).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+}
+
+fn packlight(arguments: &[&str]) -> Output {
+    command(arguments).output().expect("the program starts")
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn succeeds(arguments: &[&str]) {
+    let output = packlight(arguments);
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
+}
+
+/// Exit code 1, and a part of the message.
+fn fails(arguments: &[&str], code: i32, part: &str) {
+    let output = packlight(arguments);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {}", stderr(&output));
+    // Long messages are wrapped.
+    let message = stderr(&output).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(message.contains(part), "{arguments:?}: {part} is not in\n{message}");
+}
+
+fn render<'a>(out: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    [&["render", SCENE, "-o", out, "--quiet"], &PICTURE[..], more].concat()
+}
+
+/// An empty folder of its own for a test.
+fn folder(test: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("parts").join(test);
+    if folder.exists() {
+        fs::remove_dir_all(&folder).expect("an old folder can be removed");
+    }
+    fs::create_dir_all(&folder).expect("a folder can be made");
+    folder
+}
+
+fn path(folder: &Path, name: &str) -> String {
+    folder.join(name).display().to_string()
+}
+
+fn bytes(path: &str) -> Vec<u8> {
+    fs::read(path).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("readable");
+    let mut names: Vec<_> =
+        entries.map(|entry| entry.expect("readable").file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+fn same(one: &str, other: &str) {
+    assert!(bytes(one) == bytes(other), "{one} and {other} are not the same bytes");
+}
+
+/// Waits until a file is there, and the child has not ended before.
+fn wait_for(file: &str, child: &mut Child) {
+    let start = Instant::now();
+    while !Path::new(file).exists() {
+        assert!(
+            child.try_wait().expect("a child can be asked").is_none(),
+            "it ended before {file} was there"
+        );
+        assert!(start.elapsed() < Duration::from_secs(120), "{file} does not come");
+        thread::sleep(Duration::from_millis(2));
+    }
+}
+
+#[test]
+fn shards_merge_to_the_bytes_of_one_machine() {
+    let folder = folder("shards");
+    let whole = path(&folder, "whole.exr");
+    let layers = ["--aov", "albedo,depth"];
+    succeeds(&render(&whole, &layers));
+    for (by, count) in [("tiles", 4), ("samples", 3), ("samples", 2)] {
+        let shards: Vec<String> =
+            (1..=count).map(|i| path(&folder, &format!("{by}-{i}-{count}.exr"))).collect();
+        for (i, shard) in shards.iter().enumerate() {
+            let which = format!("{}/{count}", i + 1);
+            succeeds(&render(shard, &[&layers[..], &["--shard", &which, "--shard-by", by]].concat()));
+        }
+        let merged = path(&folder, "merged.exr");
+        // In any order.
+        let parts: Vec<&str> = shards.iter().rev().map(String::as_str).collect();
+        succeeds(&[&["merge", "-o", &merged, "--quiet"], &parts[..]].concat());
+        same(&merged, &whole);
+    }
+}
+
+#[test]
+fn shards_that_do_not_fit_are_named() {
+    let folder = folder("unfit");
+    let file = |name: &str| path(&folder, name);
+    let (one, two, twin, other) = (file("1.exr"), file("2.exr"), file("twin.exr"), file("other.exr"));
+    let picture = ["--width", "33", "--spp", "1"];
+    let shard = |out: &str, which: &str, more: &[&str]| {
+        succeeds(&[&["render", SCENE, "-o", out, "--quiet", "--shard", which], &picture[..], more].concat());
+    };
+    shard(&one, "1/2", &[]);
+    shard(&two, "2/2", &[]);
+    shard(&twin, "2/2", &[]);
+    shard(&other, "2/2", &["--seed", "9"]);
+    let out = file("out.exr");
+    let merge = |parts: &[&str]| -> Vec<String> {
+        [&["merge", "-o", &out], parts].concat().into_iter().map(String::from).collect()
+    };
+    let refused = |parts: &[&str], message: &str| {
+        let arguments = merge(parts);
+        fails(&arguments.iter().map(String::as_str).collect::<Vec<_>>(), 1, message);
+        assert!(!Path::new(&out).exists());
+    };
+    refused(&[&one], "shard 2 of 2 is not there");
+    refused(&[&one, &two, &twin], "are both shard 2/2");
+    refused(&[&one, &other], "the seed is 9 there and 0 here");
+    fs::write(file("picture.exr"), b"v/1\x01").expect("writable");
+    refused(&[&one, &file("picture.exr")], "no checkpoint and no shard");
+    succeeds(&["merge", &one, "-o", &out, "--partial"]);
+    assert!(Path::new(&out).exists());
+}
+
+#[test]
+fn shards_are_numbered_by_the_environment() {
+    let folder = folder("environment");
+    let (typed, asked) = (path(&folder, "typed.exr"), path(&folder, "asked.exr"));
+    let picture = ["--width", "33", "--spp", "1", "--quiet"];
+    succeeds(&[&["render", SCENE, "-o", &typed, "--shard", "2/2"], &picture[..]].concat());
+    let from =
+        [&["render", SCENE, "-o", &asked, "--shard-from", "PART", "--shards", "2"], &picture[..]].concat();
+    let with = |value: &str| command(&from).env("PART", value).output().expect("the program starts");
+    assert_eq!(with("1").status.code(), Some(0), "{}", stderr(&with("1")));
+    // Times differ, sums do not.
+    let out = path(&folder, "out.exr");
+    succeeds(&["merge", &typed, "-o", &out, "--partial", "--quiet"]);
+    let first = bytes(&out);
+    succeeds(&["merge", &asked, "-o", &out, "--partial", "--quiet"]);
+    assert!(first == bytes(&out));
+    assert!(stderr(&with("2")).contains("from 0 to 1"), "{}", stderr(&with("2")));
+    fails(&from, 1, "no variable PART");
+    fails(&render(&out, &["--shard", "3/2"]), 2, "--shard 3/16");
+    fails(&render(&out, &["--shard", "1/9", "--shard-by", "samples"]), 2, "there are 3 for 9");
+    let png = path(&folder, "a.png");
+    fails(&render(&png, &["--shard", "1/2"]), 2, "only into an .exr");
+}
+
+#[test]
+fn a_killed_render_is_resumed_to_the_bit() {
+    let folder = folder("killed");
+    let (whole, out, kept) =
+        (path(&folder, "whole.exr"), path(&folder, "out.exr"), path(&folder, "kept.exr"));
+    succeeds(&render(&whole, &[]));
+    let keep = ["--checkpoint", &kept, "--every", "1ms"];
+    let mut kills = 0;
+    // As a queue would: the same command again and again, until it ends by itself.
+    loop {
+        let again = [&keep[..], &["--resume", &kept]].concat();
+        let mut child = command(&render(&out, &again)).spawn().expect("the program starts");
+        wait_for(&kept, &mut child);
+        thread::sleep(Duration::from_millis(5 + 40 * kills));
+        if kills < 6 {
+            // Whatever it was doing, writing a checkpoint most of the time.
+            child.kill().expect("a child can be killed");
+            child.wait().expect("it ends");
+            kills += 1;
+            assert!(Path::new(&kept).exists());
+        } else {
+            let output = child.wait_with_output().expect("it ends");
+            assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+            break;
+        }
+    }
+    same(&out, &whole);
+}
+
+#[test]
+fn a_checkpoint_of_another_render_is_refused_with_the_difference() {
+    let folder = folder("other-render");
+    let (out, kept) = (path(&folder, "out.exr"), path(&folder, "kept.exr"));
+    succeeds(&render(&out, &["--checkpoint", &kept]));
+    let resumed = |more: &[&str], message: &str| {
+        fails(&render(&out, &[&["--resume", &kept], more].concat()), 1, message);
+    };
+    resumed(&["--seed", "3"], "the seed is 0 there and 3 here");
+    resumed(&["--integrator", "direct"], "the integrator is Path");
+    resumed(&["--height", "50"], "the film is");
+    resumed(&["--aov", "depth"], "the list of channels is R, G, B there and R, G, B, depth.Z here");
+    resumed(&["--shard", "1/2"], "the shard is 1/1 there and 1/2 here");
+    let other = path(&folder, "other.xml");
+    let text = fs::read_to_string(SCENE).expect("readable");
+    fs::write(&other, text.replacen("</scene>", "<shape type=\"sphere\"/></scene>", 1)).expect("writable");
+    let arguments = [&["render", &other, "-o", &out, "--resume", &kept], &PICTURE[..]].concat();
+    fails(&arguments, 1, "is of another render: the scene is ");
+    fails(&render(&out, &["--resume", "no-such-file"]), 1, "no-such-file");
+    let mut damaged = bytes(&kept);
+    let at = damaged.len() - 500;
+    damaged[at] ^= 1;
+    fs::write(&kept, damaged).expect("writable");
+    resumed(&[], "it is damaged");
+}
+
+#[test]
+fn a_finished_render_goes_on_to_more_samples() {
+    let folder = folder("more");
+    let file = |name: &str| path(&folder, name);
+    let (kept, out, whole) = (file("kept.exr"), file("out.exr"), file("whole.exr"));
+    let render = |out: &str, more: &[&str]| {
+        succeeds(&[&["render", SCENE, "-o", out, "--width", "40", "--quiet"], more].concat());
+    };
+    render(&out, &["--spp", "21", "--checkpoint", &kept]);
+    render(&out, &["--spp", "50", "--resume", &kept]);
+    render(&whole, &["--spp", "50"]);
+    same(&out, &whole);
+}
+
+/// Long enough to be stopped by hand.
+const ENDLESS: [&str; 4] = ["--spp", "1000000", "--threads", "2"];
+
+#[cfg(unix)]
+#[test]
+fn a_signal_writes_what_is_there_and_says_how_much() {
+    for (name, signal) in [("int", "-INT"), ("term", "-TERM")] {
+        let folder = folder(&format!("signal-{name}"));
+        let file = |name: &str| path(&folder, name);
+        let (out, kept, png) = (file("out.exr"), file("kept.exr"), file("out.png"));
+        for (target, keeps) in [(&out, vec!["--checkpoint", &kept, "--every", "10ms"]), (&png, vec![])] {
+            let arguments =
+                [&["render", SCENE, "-o", target, "--width", "40"], &ENDLESS[..], &keeps[..]].concat();
+            let mut child = command(&arguments).spawn().expect("the program starts");
+            if keeps.is_empty() {
+                thread::sleep(Duration::from_millis(1500));
+            } else {
+                wait_for(&kept, &mut child);
+            }
+            let killed = Command::new("kill").args([signal, &child.id().to_string()]).status();
+            assert!(killed.is_ok_and(|status| status.success()));
+            let output = child.wait_with_output().expect("it ends");
+            assert_eq!(output.status.code(), Some(4), "{}", stderr(&output));
+            let told = stderr(&output);
+            assert!(told.contains("stopped: ") && told.contains(" of 1,000,000 samples a pixel"), "{told}");
+            assert!(Path::new(target).exists());
+        }
+        // What was stopped is a part: it can be continued, and to the same bits as the checkpoint.
+        let whole = file("whole.exr");
+        let few = ["--width", "40", "--quiet"];
+        succeeds(
+            &[
+                &["render", SCENE, "-o", &whole, "--spp", "1000000", "--resume", &out, "--time-limit", "1ms"],
+                &few[..],
+            ]
+            .concat(),
+        );
+    }
+}
+
+#[test]
+fn a_time_limit_is_kept_and_what_is_there_goes_on() {
+    let folder = folder("time-limit");
+    let out = path(&folder, "out.exr");
+    let start = Instant::now();
+    let arguments = ["render", SCENE, "-o", &out, "--width", "40", "--time-limit", "500ms", "--json"];
+    let output = packlight(&[&arguments[..], &ENDLESS[..]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(start.elapsed() < Duration::from_secs(60), "{:?}", start.elapsed());
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let (least, most) = (json["samples_least"].as_u64(), json["samples_most"].as_u64());
+    assert!(most > Some(0) && most < Some(1_000_000), "{json}");
+    assert!(least.unwrap_or(0) * 2 >= most.unwrap_or(9) - 1, "{json}");
+}
+
+#[test]
+fn a_target_error_stops_by_tiles_the_same_on_any_thread() {
+    let folder = folder("target-error");
+    let file = |name: &str| path(&folder, name);
+    let picture = ["--width", "70", "--spp", "512", "--target-error", "0.05", "--quiet"];
+    let outs = ["1", "3"].map(|threads| {
+        let out = file(&format!("{threads}.exr"));
+        succeeds(&[&["render", SCENE, "-o", &out, "--threads", threads], &picture[..]].concat());
+        out
+    });
+    same(&outs[0], &outs[1]);
+    // Shards of tiles decide alike.
+    let parts = ["1/2", "2/2"].map(|which| {
+        let out = file(&which.replace('/', "-"));
+        let out = format!("{out}.exr");
+        succeeds(&[&["render", SCENE, "-o", &out, "--shard", which], &picture[..]].concat());
+        out
+    });
+    let merged = file("merged.exr");
+    succeeds(&["merge", &parts[0], &parts[1], "-o", &merged, "--quiet"]);
+    same(&merged, &outs[0]);
+    let header = packlight::picture::exr_attributes(&bytes(&merged));
+    let samples = header.iter().find(|(name, _)| name == "packlight.samples").expect("it is said");
+    assert!(samples.1.ends_with(" of 512") && samples.1.starts_with("64"), "{samples:?}");
+}
+
+#[test]
+fn a_folder_that_goes_away_costs_no_samples() {
+    let folder = folder("gone");
+    let gone = folder.join("gone");
+    fs::create_dir(&gone).expect("a folder can be made");
+    let (out, kept) = (path(&gone, "out.exr"), path(&folder, "kept.exr"));
+    let whole = path(&folder, "whole.exr");
+    succeeds(&render(&whole, &[]));
+    let keep = ["--checkpoint", &kept, "--every", "1ms"];
+    let mut child = command(&render(&out, &keep)).spawn().expect("the program starts");
+    wait_for(&kept, &mut child);
+    fs::remove_dir(&gone).expect("an empty folder can be removed");
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let rescued = path(&folder, "out.rescued.exr");
+    assert!(stderr(&output).contains(&format!("what was rendered is in {rescued}")), "{}", stderr(&output));
+    let out = path(&folder, "out.exr");
+    succeeds(&render(&out, &["--resume", &rescued]));
+    same(&out, &whole);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_costs_no_samples_and_no_old_picture() {
+    let folder = folder("full");
+    let (mount, here) = (folder.join("disk"), folder.join("here"));
+    fs::create_dir(&mount).expect("a folder can be made");
+    fs::create_dir(&here).expect("a folder can be made");
+    let disk = mount.display();
+    let script = |then: &str| {
+        let program = env!("CARGO_BIN_EXE_packlight");
+        let text = format!(
+            "mount -t tmpfs -o size=16k none {disk} || exit 99; echo old > {disk}/out.exr; cd {}; \
+             {program} render {SCENE} -o {disk}/out.exr --quiet {}; code=$?; {then}; exit $code",
+            here.display(),
+            PICTURE.join(" ")
+        );
+        Command::new("unshare").args(["-m", "sh", "-c", &text]).output()
+    };
+    let Ok(output) = script(&format!("cat {disk}/out.exr; ls {disk}")) else {
+        println!("skipped: there is no `unshare`");
+        return;
+    };
+    if output.status.code() != Some(1) {
+        println!("skipped: a small disk can't be mounted here ({})", stderr(&output));
+        assert!(matches!(output.status.code(), Some(99) | None) || stderr(&output).contains("unshare"));
+        return;
+    }
+    assert!(stderr(&output).contains("No space left on device"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("what was rendered is in ./out.rescued.exr"), "{}", stderr(&output));
+    assert_eq!(String::from_utf8_lossy(&output.stdout), "old\nout.exr\n");
+    assert_eq!(names(&here), ["out.rescued.exr"]);
+}
+
+#[test]
+fn kill_9_leaves_the_old_picture_or_the_new_one() {
+    let folder = folder("kill");
+    let (whole, out) = (path(&folder, "whole.exr"), path(&folder, "out.exr"));
+    succeeds(&render(&whole, &[]));
+    let time = Instant::now();
+    succeeds(&render(&out, &[]));
+    let time = time.elapsed();
+    let new = bytes(&out);
+    for step in 0..12 {
+        fs::write(&out, "old").expect("writable");
+        let mut child = command(&render(&out, &[])).spawn().expect("the program starts");
+        // More of them near the end, when the file is written.
+        thread::sleep(time.mul_f64(1.0 - 0.75f64.powi(step)));
+        child.kill().expect("a child can be killed");
+        child.wait().expect("it ends");
+        let there = bytes(&out);
+        assert!(there == b"old" || there == new, "{} bytes are neither", there.len());
+    }
+}
