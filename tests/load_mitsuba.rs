@@ -530,9 +530,10 @@ fn materials_and_lights_that_are_wrong_are_refused() {
             "<bsdf type='twosided'><bsdf type='dielectric'/></bsdf>",
             "3:24: `twosided` is for opaque bsdfs: a `dielectric` already has two sides | ",
         ),
+        ("<bsdf type='twosided' id='a'><ref id='a'/></bsdf>", "3:39: an object can't contain itself | "),
         (
-            "<bsdf type='twosided' id='a'><ref id='a'/></bsdf>",
-            "3:2: a `twosided` bsdf can't stand inside another | ",
+            "<bsdf type='twosided'><bsdf type='twosided'><bsdf type='diffuse'/></bsdf></bsdf>",
+            "3:24: a `twosided` bsdf can't stand inside another | ",
         ),
         (
             "<bsdf type='conductor'><string name='material' value='Ai'/></bsdf>",
