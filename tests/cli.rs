@@ -263,7 +263,7 @@ fn what_brdf_does_not_understand_is_refused() {
     fails(&["brdf", "--scene", scene, "--material", "mettal", "--check"], 1, "did you mean `metal`?");
 }
 
-/// A point light so strong that its inverse square is not a number any more.
+/// A point light so strong that what is near it is too bright for a sum.
 fn blinding(folder: &Path) -> String {
     let scene = path(folder, "blinding.xml");
     let text = "<scene version='3.0.0'><integrator type='direct'/>
@@ -271,7 +271,7 @@ fn blinding(folder: &Path) -> String {
         <integer name='height' value='8'/><rfilter type='box'/></film></sensor>
         <shape type='rectangle'><transform name='to_world'><rotate y='1' angle='180'/><translate z='5'/></transform></shape>
         <emitter type='point'><point name='position' x='0' y='0' z='4.99'/>
-        <rgb name='intensity' value='3e38'/></emitter></scene>";
+        <rgb name='intensity' value='3e26'/></emitter></scene>";
     fs::write(&scene, text).expect("a scene can be written");
     scene
 }
@@ -291,7 +291,10 @@ fn samples_that_are_not_finite_are_told_with_the_command_that_replays_them() {
         let words: Vec<&str> = command.split(' ').chain(more.iter().copied()).collect();
         let replayed = packlight(&words);
         assert_eq!(replayed.status.code(), Some(0), "{}", stderr(&replayed));
-        assert!(stdout(&replayed).contains(" inf"), "{}", stdout(&replayed));
+        let printed = stdout(&replayed);
+        let greatest =
+            printed.split_whitespace().filter_map(|word| word.parse::<f32>().ok()).fold(0.0, f32::max);
+        assert!(greatest > packlight::film::GREATEST, "{printed}");
     }
 }
 

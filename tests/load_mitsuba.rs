@@ -340,8 +340,8 @@ fn legal_oddities_are_warnings() {
     has("<scene version='3.0.0'><sensor type='orthographic'/></scene>", "no film");
     has(
         "<scene version='3.0.0'><sensor type='orthographic'><film type='hdrfilm'>
-           <string name='pixel_format' value='luminance'/></film></sensor></scene>",
-        "`luminance` is not written",
+           <string name='pixel_format' value='xyz'/></film></sensor></scene>",
+        "tristimulus values",
     );
 }
 
@@ -530,9 +530,10 @@ fn materials_and_lights_that_are_wrong_are_refused() {
             "<bsdf type='twosided'><bsdf type='dielectric'/></bsdf>",
             "3:24: `twosided` is for opaque bsdfs: a `dielectric` already has two sides | ",
         ),
+        ("<bsdf type='twosided' id='a'><ref id='a'/></bsdf>", "3:39: an object can't contain itself | "),
         (
-            "<bsdf type='twosided' id='a'><ref id='a'/></bsdf>",
-            "3:2: a `twosided` bsdf can't stand inside another | ",
+            "<bsdf type='twosided'><bsdf type='twosided'><bsdf type='diffuse'/></bsdf></bsdf>",
+            "3:24: a `twosided` bsdf can't stand inside another | ",
         ),
         (
             "<bsdf type='conductor'><string name='material' value='Ai'/></bsdf>",

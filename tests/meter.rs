@@ -26,7 +26,7 @@ fn scene(body: &str) -> Scene {
 
 /// Irradiance at the origin, seen along +z: (mean, standard error).
 fn read(body: &str) -> (f64, f64) {
-    let receiver = Receiver { position: Vec3::ZERO, normal: Vec3::Z };
+    let receiver = Receiver::Point { position: Vec3::ZERO, normal: Vec3::Z };
     let reading = meter::measure(scene(body), receiver, 1 << 16, &Settings::default());
     assert_eq!((reading.samples, reading.invalid_samples), (1 << 16, 0));
     (reading.irradiance.x, reading.standard_error.x)
@@ -130,7 +130,7 @@ fn many_lights_are_one() {
 fn both_pipelines_read_the_same_bits() {
     let body =
         shining("disk", &above(1.0, 1.0)) + &shining("sphere", "<point name='center' x='1' y='0' z='2'/>");
-    let receiver = Receiver { position: Vec3::new(0.1, 0.2, 0.0), normal: Vec3::Z };
+    let receiver = Receiver::Point { position: Vec3::new(0.1, 0.2, 0.0), normal: Vec3::Z };
     let reading = |backend| {
         let settings = Settings { backend, sort: true };
         meter::measure(scene(&body), receiver, 1 << 12, &settings)
@@ -157,5 +157,91 @@ fn pictures_of_irradiance_do_not_depend_on_the_material() {
     assert_eq!(black, mirror);
     for &sample in &black.channels[0].samples {
         assert!((f64::from(sample) - PI).abs() < 0.02 * PI, "{sample}");
+    }
+}
+
+/// A scene seen by a meter on a shape, and what it reads by `measure` and as a picture of one pixel.
+fn on_surface(shape: &str, inside: &str, others: &str) -> [(f64, f64); 2] {
+    let folder = tempfile::tempdir().expect("the folder for temporary files can be written");
+    let path = folder.path().join("scene.xml");
+    let text = format!(
+        "<scene version='3.0.0'><integrator type='path'/><shape type='{shape}'>{inside}\
+         <bsdf type='diffuse'><rgb name='reflectance' value='0'/></bsdf><sensor type='irradiancemeter'>\
+         <sampler type='independent'><integer name='sample_count' value='65536'/></sampler>\
+         <film type='hdrfilm'><integer name='width' value='1'/><integer name='height' value='1'/>\
+         <rfilter type='box'/></film></sensor></shape>{others}</scene>"
+    );
+    fs::write(&path, text).expect("the folder for temporary files can be written");
+    let loaded = load(&path, &LoadOptions::default()).expect(others);
+    assert!(loaded.warnings.is_empty(), "{}", loaded.warnings[0]);
+    let scene = compile(&loaded.description).expect(others);
+    assert!(scene.has_meter());
+    let picture = render(&scene, &Settings::default(), &|_| {}).picture;
+    assert_eq!((picture.width, picture.height), (1, 1));
+    let reading = meter::measure(scene, Receiver::Sensor, 1 << 16, &Settings::default());
+    let (mean, error) = (reading.irradiance.x, reading.standard_error.x);
+    // As many stratified samples have no more error than independent ones.
+    [(mean, error), (f64::from(picture.channels[0].samples[0]), error)]
+}
+
+#[track_caller]
+fn surface_reads(readings: [(f64, f64); 2], want: f64) {
+    for (mean, error) in readings {
+        assert!((mean - want).abs() <= 3.0 * error + 1e-5 * want, "{mean} ± {error}, not {want}");
+        assert!(error < 0.01 * want, "{mean} ± {error}: too noisy to tell");
+    }
+}
+
+#[test]
+fn surfaces_under_a_sky_receive_pi_wherever_they_do_not_see_themselves() {
+    let sky = "<emitter type='constant'><rgb name='radiance' value='1'/></emitter>";
+    let turned =
+        "<transform name='to_world'><scale x='2' y='0.5'/><rotate x='1' y='1' angle='33'/></transform>";
+    for shape in ["rectangle", "sphere", "cube", "disk"] {
+        let inside = if shape == "rectangle" { turned } else { "" };
+        surface_reads(on_surface(shape, inside, sky), PI);
+    }
+}
+
+/// The share F of a square's light that reaches the opposite side of a cube: with s = √2, the corner of four logarithms
+/// and arcs that is 2/π (ln(2/√3) + 2s atan(1/s) − 2 atan 1) = 0.19982.
+#[test]
+fn a_square_receives_from_the_one_opposite_what_its_form_factor_says() {
+    let s = 2f64.sqrt();
+    let share = 2.0 / PI * ((2.0 / 3f64.sqrt()).ln() + 2.0 * s * (1.0 / s).atan() - 2.0 * 1f64.atan());
+    assert!((share - 0.19982).abs() < 1e-5, "{share}");
+    surface_reads(on_surface("rectangle", "", &shining("rectangle", &above(2.0, 1.0))), share * PI);
+}
+
+/// A meter's other side, and what stands before it, count as they should: a plate hides the lamp.
+#[test]
+fn what_is_behind_a_meter_does_not_reach_it() {
+    let lamp = shining("sphere", "<point name='center' x='0' y='0' z='-5'/>");
+    for (mean, _) in on_surface("rectangle", "", &lamp) {
+        assert_eq!(mean, 0.0);
+    }
+}
+
+/// A meter is no vertex: `max_depth` 1 is what emitters send, as it is where a camera looks.
+#[test]
+fn depth_counts_from_what_a_meter_sees() {
+    let room = "<shape type='sphere'><float name='radius' value='9'/><boolean name='flip_normals' value='true'/>\
+                <bsdf type='diffuse'><rgb name='reflectance' value='0.5'/></bsdf><emitter type='area'>\
+                <rgb name='radiance' value='1'/></emitter></shape>";
+    let folder = tempfile::tempdir().expect("the folder for temporary files can be written");
+    let path = folder.path().join("scene.xml");
+    for (depth, want) in [(1, PI), (2, 1.5 * PI), (3, 1.75 * PI)] {
+        let text = format!(
+            "<scene version='3.0.0'><integrator type='path'><integer name='max_depth' value='{depth}'/>\
+             <integer name='rr_depth' value='9'/></integrator><shape type='rectangle'>\
+             <transform name='to_world'><scale value='0.01'/></transform><sensor type='irradiancemeter'>\
+             <film type='hdrfilm'><integer name='width' value='1'/><integer name='height' value='1'/></film>\
+             </sensor></shape>{room}</scene>"
+        );
+        fs::write(&path, text).expect("the folder for temporary files can be written");
+        let scene = compile(&load(&path, &LoadOptions::default()).expect(room).description).expect(room);
+        let reading = meter::measure(scene, Receiver::Sensor, 1 << 16, &Settings::default());
+        let (mean, error) = (reading.irradiance.x, reading.standard_error.x);
+        assert!((mean - want).abs() <= 3.0 * error + 1e-3 * want, "{depth}: {mean} ± {error}, not {want}");
     }
 }

@@ -317,8 +317,8 @@ fn an_instance_is_what_its_group_is_elsewhere() {
         let faces = like(p.n_g, q.n_g, 1.0) || like(p.n_g, -q.n_g, 1.0);
         let same = like(p.position, q.position, 1e-2 * size)
             && scene.material(a.primitive, a.u) == flat.material(b.primitive, b.u)
-            && (p.uv.0 - q.uv.0).abs() < CLOSE
-            && (p.uv.1 - q.uv.1).abs() < CLOSE
+            && (p.uv.u - q.uv.u).abs() < CLOSE
+            && (p.uv.v - q.uv.v).abs() < CLOSE
             && faces
             && like(p.frame.s, q.frame.s, 1.0)
             && partial(0)

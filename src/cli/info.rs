@@ -108,6 +108,7 @@ impl Info {
             Projection::Perspective { x_fov } => ("perspective", Some(x_fov.to_degrees())),
             Projection::ThinLens { x_fov, .. } => ("thinlens", Some(x_fov.to_degrees())),
             Projection::Orthographic => ("orthographic", None),
+            Projection::IrradianceMeter { .. } => ("irradiancemeter", None),
         };
         Self {
             scene,

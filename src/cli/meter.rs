@@ -1,4 +1,5 @@
-//! `packlight meter SCENE --at X,Y,Z --normal X,Y,Z`: irradiance at a point.
+//! `packlight meter SCENE [--at X,Y,Z --normal X,Y,Z]`: irradiance at a point, or over the surface that the
+//! scene's own meter stands on.
 
 use std::fmt;
 
@@ -25,13 +26,13 @@ pub(super) struct Arguments {
     #[command(flatten)]
     source: Source,
 
-    /// Where the meter is
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]
-    at: Vec3,
+    /// Where the meter is, if not where the scene's `irradiancemeter` is
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector, requires = "normal")]
+    at: Option<Vec3>,
 
     /// Where it looks; of any length
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = direction)]
-    normal: Vec3,
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = direction, requires = "at")]
+    normal: Option<Vec3>,
 
     /// Samples, at least
     #[arg(long, value_name = "N", default_value_t = 65_536, value_parser = value_parser!(u64).range(1..))]
@@ -68,12 +69,22 @@ fn measure(arguments: &Arguments) -> Result<Reading, Failure> {
     let sampler = &mut description.sensor.sampler;
     sampler.seed = arguments.seed.unwrap_or(sampler.seed);
     let scene = compile_with(&description, arguments.quality.quality())?;
-    let receiver = Receiver { position: arguments.at, normal: arguments.normal };
+    let point = arguments.at.zip(arguments.normal);
+    let receiver = match point {
+        Some((position, normal)) => Receiver::Point { position, normal },
+        None if scene.has_meter() => Receiver::Sensor,
+        None => {
+            return Err(Failure::Sentence(
+                "the scene has no irradiancemeter on a shape: say where to measure by --at and --normal"
+                    .into(),
+            ));
+        }
+    };
     let reading = meter::measure(scene, receiver, arguments.samples, &Settings::default());
     Ok(Reading {
         scene: arguments.source.path.display().to_string(),
-        at: arguments.at.to_array(),
-        normal: arguments.normal.to_array(),
+        at: point.map(|(at, _)| at.to_array()),
+        normal: point.map(|(_, normal)| normal.to_array()),
         irradiance_w_m2: reading.irradiance.to_array(),
         standard_error_w_m2: reading.standard_error.to_array(),
         samples: reading.samples,
@@ -85,8 +96,9 @@ fn measure(arguments: &Arguments) -> Result<Reading, Failure> {
 #[derive(Clone, Debug, Serialize)]
 struct Reading {
     scene: String,
-    at: [f32; 3],
-    normal: [f32; 3],
+    /// `None` is the surface of the scene's own meter.
+    at: Option<[f32; 3]>,
+    normal: Option<[f32; 3]>,
     irradiance_w_m2: [f64; 3],
     standard_error_w_m2: [f64; 3],
     samples: u64,
@@ -96,7 +108,12 @@ struct Reading {
 impl fmt::Display for Reading {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let vector = |[x, y, z]: [f32; 3]| format!("({x}, {y}, {z})");
-        writeln!(f, "{} at {}, towards {}", self.scene, vector(self.at), vector(self.normal))?;
+        match self.at.zip(self.normal) {
+            Some((at, normal)) => {
+                writeln!(f, "{} at {}, towards {}", self.scene, vector(at), vector(normal))?;
+            }
+            None => writeln!(f, "{}, mean over the surface of its irradiancemeter", self.scene)?,
+        }
         for (band, i) in ["red", "green", "blue"].into_iter().zip(0..) {
             let (mean, error) = (self.irradiance_w_m2[i], self.standard_error_w_m2[i]);
             writeln!(f, "  {band:<6} {mean:.6} ± {error:.6} W/m²")?;

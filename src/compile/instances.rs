@@ -14,10 +14,12 @@ use rayon::prelude::*;
 
 use super::primitives::{INSTANCE, Primitives, accept, accept_single};
 use super::surfaces::Surfaces;
-use super::{CompileError, References, Summary, shapes};
+use super::{
+    CompileError, References, Summary,
+    shapes::{self, Named},
+};
 use crate::bvh::{Bvh, Hitx8, Quality, Reference, Traversal};
 use crate::geometry::{Aabb, Hit, Placement, PrimitiveId, Ray, RayLanes, Rayx8};
-use crate::material::MaterialId;
 use crate::scene::{SceneDescription, ShapeGroup};
 use crate::simd::{Bits, Mask8, Real, f32x8, u32x8};
 
@@ -55,12 +57,12 @@ thread_local! {
 
 impl Group {
     /// Compiles the shapes of a group, and builds its tree.
-    fn new(group: &ShapeGroup, materials: &[MaterialId], quality: Quality) -> Result<Self, CompileError> {
+    fn new(group: &ShapeGroup, named: &Named, quality: Quality) -> Result<Self, CompileError> {
         if let Some(shape) = group.shapes.iter().find(|shape| shape.radiance.is_some()) {
             return Err(CompileError::EmitterInGroup { shape: shape.name.clone() });
         }
-        let shapes::Shapes { surfaces, references, degenerate } =
-            shapes::compile(&group.shapes, materials, &mut vec![])?;
+        let shapes::Shapes { surfaces, references, degenerate, .. } =
+            shapes::compile(&group.shapes, named, &mut vec![])?;
         let bvh = Bvh::build_with(references, quality);
         let primitives = Primitives::new(bvh.slots(), Instances::default(), |id| surfaces.primitive(id));
         Ok(Self { surfaces, primitives, bvh, degenerate })
@@ -72,13 +74,14 @@ impl Instances {
     /// `references` receives those that can be hit.
     pub(super) fn new(
         description: &SceneDescription,
-        materials: &[MaterialId],
+        named: &Named,
         quality: Quality,
         first: u32,
         references: &mut References,
     ) -> Result<Self, CompileError> {
         let SceneDescription { groups: described, instances, .. } = description;
-        let groups = described.iter().map(|group| Group::new(group, materials, quality));
+        let named = Named { metered: None, ..*named };
+        let groups = described.iter().map(|group| Group::new(group, &named, quality));
         let groups = groups.collect::<Result<Vec<_>, _>>()?;
         let parts: Vec<_> = groups.iter().map(|group| placing::parts(&group.bvh)).collect();
         let place = |instance: &crate::scene::Instance| {

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::attributes::AttributedMeshes;
 use crate::material::{
     Coat, CoatRange, Factor, Layer, MaterialId, MaterialRow, MaterialTable, MerlTable, Model, Ramp, Step,
     Tables, diffuse_reflectance,
@@ -11,8 +12,18 @@ use crate::scene::{self, Distribution, Material};
 use crate::texture::{Bitmap, Filter, Texture, TextureId, TextureTable, UvMap, Wrap};
 
 /// The table, its textures, and the id of each described material.
-pub(super) fn compile(materials: &[Material]) -> (MaterialTable, TextureTable, Vec<MaterialId>) {
-    let mut compiler = Compiler::default();
+pub(super) fn compile(
+    materials: &[Material],
+    meshes: &AttributedMeshes,
+) -> (MaterialTable, TextureTable, Vec<MaterialId>) {
+    let mut compiler = Compiler {
+        meshes,
+        textures: TextureTable::default(),
+        seen: vec![],
+        coats: vec![],
+        ramps: vec![],
+        measured: vec![],
+    };
     let rows = materials.iter().map(|material| compiler.row(material)).collect();
     let (table, ids) = {
         let coats = compiler.coats.into_iter().map(|(_, coat)| coat).collect();
@@ -21,8 +32,8 @@ pub(super) fn compile(materials: &[Material]) -> (MaterialTable, TextureTable, V
     (table, compiler.textures, ids)
 }
 
-#[derive(Default)]
-struct Compiler {
+struct Compiler<'m> {
+    meshes: &'m AttributedMeshes,
     textures: TextureTable,
     /// Pictures that several materials share are stored once.
     seen: Vec<(scene::Texture, TextureId)>,
@@ -61,7 +72,7 @@ impl Way {
     }
 }
 
-impl Compiler {
+impl Compiler<'_> {
     fn row(&mut self, material: &Material) -> MaterialRow {
         let mut others = Vec::new();
         self.layers(material, &Way::default(), &mut others);
@@ -244,6 +255,9 @@ impl Compiler {
             }
             scene::Texture::Bitmap { picture, filter, wrap, to_uv } => {
                 Texture::Bitmap { bitmap: bitmap(picture, *filter, *wrap), map: UvMap::new(*to_uv) }
+            }
+            scene::Texture::MeshAttribute { name, scale } => {
+                Texture::MeshAttribute(self.meshes.texture(name, *scale))
             }
         });
         self.seen.push((texture.clone(), id));

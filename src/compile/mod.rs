@@ -1,5 +1,6 @@
 //! A description to columns in leaf order, ids and a tree.
 
+mod attributes;
 mod canonical;
 mod filter;
 mod instances;
@@ -30,8 +31,10 @@ use crate::light::{Light, LightChoice, LightId, Sight};
 use crate::material::MaterialTable;
 use crate::scene::{AovChannel, Film, Integrator, Projection, Sampler, SceneDescription, Sensor};
 use crate::texture::TextureTable;
+use attributes::AttributedMeshes;
 use instances::Instances;
 use primitives::Primitive;
+use shapes::{Metered, Named};
 use surfaces::Surfaces;
 
 /// A scene ready to be traced.
@@ -51,6 +54,8 @@ pub struct Scene {
     pub(crate) sight: Sight,
     /// Size of the bounds of everything that can be hit.
     extent: Vec3,
+    /// In place of what the camera sees.
+    pub(crate) metered: Option<Metered>,
     pub(crate) camera: Camera,
     pub(crate) filter: Filter,
     /// Size of the picture.
@@ -96,6 +101,11 @@ pub struct Summary {
 }
 
 impl Scene {
+    /// Is its sensor an irradiance meter on a shape that can be hit?
+    pub fn has_meter(&self) -> bool {
+        self.metered.is_some()
+    }
+
     /// What was compiled.
     pub fn summary(&self) -> Summary {
         self.summary
@@ -138,10 +148,16 @@ pub fn compile(description: &SceneDescription) -> Result<Scene, CompileError> {
 /// # Errors
 /// [`CompileError`].
 pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<Scene, CompileError> {
-    let (materials, textures, material_ids) = materials::compile(&description.materials);
+    let meshes = AttributedMeshes::new(description);
+    let (materials, textures, material_ids) = materials::compile(&description.materials, &meshes);
+    let metered = match description.sensor.projection {
+        Projection::IrradianceMeter { shape } => Some(shape),
+        _ => None,
+    };
+    let named = Named { materials: &material_ids, meshes: &meshes, metered };
     let mut lights = lights::without_surface(&description.emitters);
-    let shapes::Shapes { surfaces, mut references, degenerate } =
-        shapes::compile(&description.shapes, &material_ids, &mut lights)?;
+    let shapes::Shapes { surfaces, mut references, degenerate, metered } =
+        shapes::compile(&description.shapes, &named, &mut lights)?;
     let first = surfaces.shape_of.len() as u32;
     let count = u64::from(first) + description.instances.len() as u64;
     if count > MAX_PRIMITIVES {
@@ -149,7 +165,7 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
     }
 
     let start = Instant::now();
-    let instances = Instances::new(description, &material_ids, quality, first, &mut references)?;
+    let instances = Instances::new(description, &named, quality, first, &mut references)?;
     let bvh_time = start.elapsed();
 
     let bounds = references.iter().fold(Aabb::EMPTY, |bounds, reference| bounds.union(reference.bounds));
@@ -192,6 +208,7 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
         environments,
         sight,
         extent,
+        metered,
         camera: camera(&description.sensor),
         filter: filter::compile(description.sensor.film.filter),
         film: description.sensor.film,
@@ -213,7 +230,10 @@ fn camera(sensor: &Sensor) -> Camera {
             let lens = (aperture_radius, focus_distance);
             Camera::thin_lens(sensor.to_world, libm::tan(x_fov / 2.0), size, clip, lens)
         }
-        Projection::Orthographic => Camera::orthographic(sensor.to_world, size, clip),
+        // A meter has no camera; whoever asks for its rays gets some.
+        Projection::Orthographic | Projection::IrradianceMeter { .. } => {
+            Camera::orthographic(sensor.to_world, size, clip)
+        }
     }
 }
 

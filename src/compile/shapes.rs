@@ -3,7 +3,9 @@
 use glam::Vec3;
 
 use super::{
-    CompileError, MAX_PRIMITIVES, References, canonical,
+    CompileError, MAX_PRIMITIVES, References,
+    attributes::{self, AttributedMeshes},
+    canonical,
     mesh::{self, Interpolated},
     primitives::{CANONICAL, Primitive, SPHERE, TRIANGLE},
     surfaces::{CanonicalRow, Class, ShapeRow, Surfaces},
@@ -13,6 +15,17 @@ use crate::geometry::{Aabb, CanonicalKind, Triangle};
 use crate::light::{AreaLight, Emitting, Light, LightId};
 use crate::material::MaterialId;
 use crate::scene::{Geometry, Shape};
+use crate::simd::{Real, Vector3};
+
+/// What shapes name by number.
+#[derive(Clone, Copy)]
+pub(super) struct Named<'a> {
+    /// By place in the description.
+    pub(super) materials: &'a [MaterialId],
+    pub(super) meshes: &'a AttributedMeshes,
+    /// Place of the shape whose irradiance is measured.
+    pub(super) metered: Option<u32>,
+}
 
 /// What the shapes of a description become.
 pub(super) struct Shapes {
@@ -20,22 +33,42 @@ pub(super) struct Shapes {
     pub(super) references: References,
     /// Triangles without area: they keep their numbers and are in no leaf.
     pub(super) degenerate: u64,
+    /// The shape that was asked for, if it can be hit.
+    pub(super) metered: Option<Metered>,
+}
+
+/// A shape whose irradiance is measured.
+#[derive(Debug)]
+pub(crate) struct Metered {
+    shape: Emitting,
+    side: f32,
+    /// Size of the surface around any of its points.
+    pub(crate) extent: Vec3,
+}
+
+impl Metered {
+    /// A point, uniform by area, and the normal on the side that is measured.
+    #[inline]
+    pub(crate) fn sample<R: Real>(&self, u: (R, R)) -> (Vector3<R>, Vector3<R>) {
+        let (position, n) = self.shape.sample_area(u);
+        (position, n.scale(R::splat(self.side)))
+    }
 }
 
 /// Compiles the shapes, and adds the area lights to `lights`.
 pub(super) fn compile(
     shapes: &[Shape],
-    materials: &[MaterialId],
+    named: &Named,
     lights: &mut Vec<Light>,
 ) -> Result<Shapes, CompileError> {
-    let mut all = Shapes { surfaces: Surfaces::default(), references: vec![], degenerate: 0 };
+    let mut all = Shapes { surfaces: Surfaces::default(), references: vec![], degenerate: 0, metered: None };
     all.reserve(shapes);
-    for shape in shapes {
+    for (shape, place) in shapes.iter().zip(0..) {
         let count = all.surfaces.shape_of.len() as u64 + primitive_count(&shape.geometry);
         if count > MAX_PRIMITIVES {
             return Err(CompileError::TooManyPrimitives(count));
         }
-        all.add(shape, materials[shape.material.0 as usize], lights)?;
+        all.add(shape, named, named.metered == Some(place), lights)?;
     }
     Ok(all)
 }
@@ -68,18 +101,26 @@ impl Shapes {
     fn add(
         &mut self,
         shape: &Shape,
-        material: MaterialId,
+        named: &Named,
+        metered: bool,
         lights: &mut Vec<Light>,
     ) -> Result<(), CompileError> {
         let to_world = &shape.to_world;
         let first = self.surfaces.shape_of.len() as u32;
         let references = self.references.len();
-        let shines = shape.radiance.is_some();
+        let is_drawn_from = metered || shape.radiance.is_some();
         let (class, first_in_class, emitting) = match &shape.geometry {
-            Geometry::Rectangle => self.add_triangles(shines, |all| mesh::add_rectangle(all, to_world)),
-            Geometry::Cube => self.add_triangles(shines, |all| mesh::add_cube(all, to_world)),
+            Geometry::Rectangle => {
+                let add = |all: &mut Surfaces| mesh::add_rectangle(all, to_world);
+                self.add_triangles(is_drawn_from, add, Emitting::quadrilateral)
+            }
+            Geometry::Cube => {
+                let add = |all: &mut Surfaces| mesh::add_cube(all, to_world);
+                self.add_triangles(is_drawn_from, add, Emitting::triangles)
+            }
             Geometry::Mesh { mesh, face_normals } => {
-                self.add_triangles(shines, |all| mesh::add_mesh(all, mesh, to_world, *face_normals))
+                let add = |all: &mut Surfaces| mesh::add_mesh(all, mesh, to_world, *face_normals);
+                self.add_triangles(is_drawn_from, add, Emitting::triangles)
             }
             Geometry::Sphere { center, radius } => {
                 let row = canonical::sphere(to_world, *center, *radius);
@@ -99,21 +140,30 @@ impl Shapes {
             return Err(CompileError::OutOfRange { shape: shape.name.clone() });
         }
         let side = if shape.flip_normals { -1.0 } else { 1.0 };
+        let extent = emitter_extent(&emitting);
+        if metered && self.references.len() > references {
+            self.metered = Some(Metered { shape: emitting.clone(), side, extent });
+        }
         let light = match shape.radiance {
             Some(radiance) if self.references.len() > references => {
-                let extent = emitter_extent(&emitting);
                 lights.push(Light::Area(AreaLight { radiance, shape: emitting, side, extent, bounds }));
                 LightId(lights.len() as u32 - 1)
             }
             _ => LightId::NONE,
         };
+        let mesh = match &shape.geometry {
+            Geometry::Mesh { mesh, .. } => named.meshes.number(mesh),
+            _ => attributes::NONE,
+        };
+        self.surfaces.attributed |= mesh != attributes::NONE;
         self.surfaces.shapes.push(ShapeRow {
             first,
             first_in_class: first_in_class as u32,
             class,
-            material,
+            material: named.materials[shape.material.0 as usize],
             light,
             side,
+            mesh,
         });
         Ok(())
     }
@@ -130,11 +180,12 @@ impl Shapes {
         index
     }
 
-    /// Numbers the triangles that `add` adds. Those of a shape that shines are kept for its light, too.
+    /// Numbers the triangles that `add` adds. Those of a shape of which points are drawn are kept for that, too.
     fn add_triangles(
         &mut self,
-        shines: bool,
+        is_drawn_from: bool,
         add: impl FnOnce(&mut Surfaces) -> Interpolated,
+        together: fn(Vec<Triangle>) -> Emitting,
     ) -> (Class, usize, Emitting) {
         let first = self.surfaces.triangles.len();
         let Interpolated { uv, normal } = add(&mut self.surfaces);
@@ -147,12 +198,12 @@ impl Shapes {
                 self.degenerate += 1;
             } else {
                 self.refer(triangle.bounds(), TRIANGLE);
-                if shines {
+                if is_drawn_from {
                     emitting.push(triangle);
                 }
             }
         }
-        (Class::Triangles { uv, normal }, first, Emitting::triangles(emitting))
+        (Class::Triangles { uv, normal }, first, together(emitting))
     }
 
     fn add_canonical(&mut self, row: CanonicalRow) -> (Class, usize, Emitting) {
@@ -172,6 +223,7 @@ impl Shapes {
 fn emitter_extent(emitting: &Emitting) -> Vec3 {
     match emitting {
         Emitting::Sphere(sphere) => Vec3::splat(sphere.radius),
+        Emitting::Rectangle(rectangle) => rectangle.extent(),
         Emitting::Triangles { triangles, .. } => {
             triangles.iter().fold(Vec3::ZERO, |extent, t| extent.max(t.e1().abs() + t.e2().abs()))
         }

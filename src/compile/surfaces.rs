@@ -7,6 +7,7 @@ use crate::light::LightId;
 use crate::material::MaterialId;
 use crate::math::{Frame, INV_PI, INV_TWO_PI, acos, atan2};
 use crate::simd::{Bits, Mask, Real, Vector3, vector3};
+use crate::texture::Coordinates;
 
 pub(super) mod partials;
 
@@ -48,6 +49,8 @@ pub(super) struct ShapeRow {
     pub(super) light: LightId,
     /// −1 where `flip_normals` is set.
     pub(super) side: f32,
+    /// Its number among meshes with attributes, or [`attributes::NONE`](super::attributes::NONE).
+    pub(super) mesh: u32,
 }
 
 /// A sphere's poles: rows of the rotation from world to its own axes.
@@ -77,6 +80,8 @@ pub(super) struct Surfaces {
     pub(super) triangles: Vec<[u32; 3]>,
     pub(super) spheres: Vec<SphereRow>,
     pub(super) canonicals: Vec<CanonicalRow>,
+    /// Does any shape have attributes?
+    pub(super) attributed: bool,
 }
 
 /// Points on surfaces, ready to be shaded.
@@ -92,8 +97,8 @@ pub struct Surface<R: Real> {
     pub frame: Frame<R>,
     /// ∂p/∂u and ∂p/∂v in world space where they were asked for, else zero.
     pub partials: [Vector3<R>; 2],
-    /// Texture coordinates.
-    pub uv: (R, R),
+    /// Where textures are looked up.
+    pub uv: Coordinates<R>,
     /// [`LightId`] of the shape.
     pub light: R::Bits,
 }
@@ -114,7 +119,7 @@ impl<R: Real> Surface<R> {
             n_g: select(a.n_g, b.n_g),
             frame,
             partials: [0, 1].map(|k| select(a.partials[k], b.partials[k])),
-            uv: (R::select(mask, a.uv.0, b.uv.0), R::select(mask, a.uv.1, b.uv.1)),
+            uv: Coordinates::select(mask, a.uv, b.uv),
             light: R::Bits::select(mask, a.light, b.light),
         }
     }
@@ -172,13 +177,20 @@ impl Surfaces {
             moves = [0, 1].map(|k| Vector3::from_fn(|i| lanes[i][k]));
             frame = partials::frame_along(n_s, moves[0]);
         }
+        let mut coordinates = Coordinates::from(part.uv);
+        if self.attributed {
+            let row = |i: usize| &self.shapes[shape(i) as usize];
+            coordinates.mesh = R::Bits::from_fn(|i| row(i).mesh);
+            coordinates.face = R::Bits::from_fn(|i| primitive.lane(i).wrapping_sub(row(i).first));
+            coordinates.weights = (u, v);
+        }
         Surface {
             position: part.position,
             extent: part.extent,
             n_g,
             frame,
             partials: moves,
-            uv: part.uv,
+            uv: coordinates,
             light,
         }
     }

@@ -1,7 +1,8 @@
 //! Samples to pictures: planes of sums.
 //!
 //! A pixel is the weighted mean of its own samples, drawn and weighted by a [`Filter`] and added in an
-//! order that [`sums`] fixes; a sample with a value that is not finite is counted and kept out.
+//! order that [`sums`] fixes; a sample with a value that is not finite, or too great for a sum, is
+//! counted and kept out.
 
 mod filter;
 pub mod spread;
@@ -9,7 +10,7 @@ pub mod sums;
 mod tile;
 
 pub use filter::Filter;
-pub use tile::{Tile, TileFilm, tiles};
+pub use tile::{GREATEST, Tile, TileFilm, tiles};
 
 use crate::picture::{Channel, Picture};
 use sums::Sums;

@@ -5,6 +5,10 @@ use std::ops::Range;
 use super::spread::Spread;
 use super::sums::{self, BLOCK, Node, Sums};
 
+/// The greatest value of a sample: no sum of as many as can be counted overflows. Whether a sample is kept
+/// must not depend on those before it, which may be on another machine.
+pub const GREATEST: f32 = f32::MAX / 4_294_967_296.0;
+
 /// A rectangle of pixels that one thread fills at a time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Tile {
@@ -83,7 +87,7 @@ impl TileFilm {
     /// before [`finish_sample`](Self::finish_sample).
     #[inline]
     pub fn add(&mut self, pixel: usize, weight: f32, value: impl Fn(usize) -> f32) {
-        if !(0..self.channels()).all(|c| value(c).is_finite()) {
+        if !(0..self.channels()).all(|c| (value(c) * weight).abs() <= GREATEST) {
             self.keep_out(pixel as u32);
             return;
         }
@@ -177,6 +181,13 @@ mod tests {
             film.finish_sample();
         }
         film
+    }
+
+    #[test]
+    fn what_would_overflow_a_sum_is_kept_out() {
+        let film = filled(0, [1.0, 3e38, 3.0, -1e29, 2e28]);
+        assert_eq!((film.invalid, film.first_invalid), (2, Some((0, 1))));
+        assert_eq!(film.total().counts, [3]);
     }
 
     fn noise(sample: u32) -> f32 {

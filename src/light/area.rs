@@ -1,14 +1,15 @@
 //! Shapes that emit.
 //!
 //! The same radiance in all directions, on the side of the normal. A sphere that shines outward is sampled by
-//! the cone it is seen in (density 1/(2π(1 − cos θ_max))), everything else uniformly by area; seen from
+//! the cone it is seen in (density 1/(2π(1 − cos θ_max))), a rectangle by its solid angle, everything else
+//! uniformly by area; seen from
 //! distance d under the angle θ' at the light, a density 1/A per area is d²/(A cos θ') per solid angle.
 
 use std::f32::consts::PI;
 
 use glam::Vec3;
 
-use super::{LightSample, Reach};
+use super::{LightSample, Reach, rectangle::Rectangle};
 use crate::geometry::{Aabb, CanonicalKind, Sphere, Triangle, offset_origin};
 use crate::math::{Frame, sin_cos_turns, warp};
 use crate::simd::{Mask, Real, Vector3, vector3};
@@ -42,6 +43,8 @@ pub enum Emitting {
         /// `sums[i]` is the area of triangles 0..=i.
         sums: Vec<f32>,
     },
+    /// A rectangle, its normal x × y.
+    Rectangle(Rectangle),
     /// A disk or a cylinder: the image of the canonical one.
     Canonical {
         /// Which.
@@ -81,8 +84,18 @@ impl Emitting {
         Self::Triangles { normals: triangles.iter().map(normal).collect(), triangles, sums }
     }
 
+    /// A rectangle's two triangles, or whatever else they are.
+    pub fn quadrilateral(triangles: Vec<Triangle>) -> Self {
+        match triangles.as_slice() {
+            [first, second] => Rectangle::of([first, second]).map(Self::Rectangle),
+            _ => None,
+        }
+        .unwrap_or_else(|| Self::triangles(triangles))
+    }
+
     fn area(&self) -> f32 {
         match self {
+            Self::Rectangle(rectangle) => rectangle.area(),
             Self::Sphere(sphere) => 4.0 * PI * sphere.radius * sphere.radius,
             Self::Triangles { sums, .. } => sums.last().copied().unwrap_or(0.0),
             Self::Canonical { area, .. } => *area,
@@ -92,6 +105,7 @@ impl Emitting {
     /// (middle, radius) of a ball that holds the shape.
     pub(super) fn ball(&self) -> (Vec3, f32) {
         match self {
+            Self::Rectangle(rectangle) => (rectangle.middle(), 0.5 * rectangle.span().length()),
             Self::Sphere(sphere) => (sphere.center, sphere.radius),
             Self::Triangles { triangles, .. } => {
                 let bounds = triangles.iter().fold(Aabb::EMPTY, |bounds, t| bounds.union(t.bounds()));
@@ -109,8 +123,9 @@ impl Emitting {
 
     /// A point and its normal, uniform by area.
     #[inline]
-    fn sample_area<R: Real>(&self, (u, v): (R, R)) -> (Vector3<R>, Vector3<R>) {
+    pub(crate) fn sample_area<R: Real>(&self, (u, v): (R, R)) -> (Vector3<R>, Vector3<R>) {
         match self {
+            Self::Rectangle(rectangle) => rectangle.sample_area((u, v)),
             Self::Sphere(sphere) => {
                 let n = warp::sphere(u, v);
                 (Vector3::splat(sphere.center) + n.scale(R::splat(sphere.radius)), n)
@@ -217,21 +232,25 @@ impl AreaLight {
     /// Draws a point of the light as seen from `from`.
     #[inline]
     pub fn sample<R: Real>(&self, from: Vector3<R>, u: (R, R)) -> LightSample<R> {
-        let by_cone = self.seen_as_cone().map(|sphere| sample_cone(sphere, from, u));
+        let by_angle = match self.seen_by_angle() {
+            Some(Angular::Cone(sphere)) => Some(sample_cone(sphere, from, u)),
+            Some(Angular::Rectangle(rectangle)) => Some(rectangle.sample_angle(from, u)),
+            None => None,
+        };
         let (mut position, mut n_g) = self.shape.sample_area(u);
-        let mut cone_pdf = R::zero();
-        let mut outside = R::Mask::splat(false);
-        if let Some(cone) = by_cone {
-            outside = cone.outside;
-            position = Vector3::select(outside, cone.position, position);
-            n_g = Vector3::select(outside, cone.n_g, n_g);
-            cone_pdf = cone.pdf;
+        let mut angular_pdf = R::zero();
+        let mut lanes = R::Mask::splat(false);
+        if let Some(drawn) = by_angle {
+            lanes = drawn.lanes;
+            position = Vector3::select(lanes, drawn.position, position);
+            n_g = Vector3::select(lanes, drawn.n_g, n_g);
+            angular_pdf = drawn.pdf;
         }
         let to = position - from;
         let squared = to.dot(to);
         let wi = to.scale(R::one() / squared.sqrt());
         let cos = -wi.dot(n_g) * R::splat(self.side);
-        let pdf = R::select(outside, cone_pdf, squared / (cos * R::splat(self.shape.area())));
+        let pdf = R::select(lanes, angular_pdf, squared / (cos * R::splat(self.shape.area())));
         let valid = cos.gt(R::zero()) & pdf.gt(R::zero()) & pdf.lt(R::splat(f32::INFINITY));
         LightSample {
             wi,
@@ -250,30 +269,41 @@ impl AreaLight {
         let squared = to.dot(to);
         let cos = (to.dot(point.n_g) / squared.sqrt()).abs();
         let by_area = squared / (cos * R::splat(self.shape.area()));
-        match self.seen_as_cone() {
-            Some(sphere) => {
+        let (lanes, angular_pdf) = match self.seen_by_angle() {
+            Some(Angular::Cone(sphere)) => {
                 let (outside, one_minus_cos_max) = seen_from(sphere, from);
-                R::select(outside, warp::cone_pdf(one_minus_cos_max), by_area)
+                (outside, warp::cone_pdf(one_minus_cos_max))
             }
-            None => by_area,
-        }
+            Some(Angular::Rectangle(rectangle)) => rectangle.angular_pdf(from),
+            None => return by_area,
+        };
+        R::select(lanes, angular_pdf, by_area)
     }
 
-    /// The sphere that shines outward. One that shines inward lights its own inside, whose points are outside
-    /// of it as often as rounding has it so.
-    fn seen_as_cone(&self) -> Option<&Sphere> {
+    /// Not the sphere that shines inward: it lights its own inside, whose points are outside of it as often as
+    /// rounding has it so.
+    fn seen_by_angle(&self) -> Option<Angular<'_>> {
         match &self.shape {
-            Emitting::Sphere(sphere) if self.side > 0.0 => Some(sphere),
+            Emitting::Sphere(sphere) if self.side > 0.0 => Some(Angular::Cone(sphere)),
+            Emitting::Rectangle(rectangle) => Some(Angular::Rectangle(rectangle)),
             _ => None,
         }
     }
 }
 
-struct Cone<R: Real> {
-    outside: R::Mask,
-    position: Vector3<R>,
-    n_g: Vector3<R>,
-    pdf: R,
+/// What is sampled by solid angle.
+enum Angular<'l> {
+    Cone(&'l Sphere),
+    Rectangle(&'l Rectangle),
+}
+
+/// Points drawn by solid angle.
+pub(super) struct Drawn<R: Real> {
+    /// Where they are; elsewhere they are to be drawn by area.
+    pub(super) lanes: R::Mask,
+    pub(super) position: Vector3<R>,
+    pub(super) n_g: Vector3<R>,
+    pub(super) pdf: R,
 }
 
 /// (is the point outside, 1 − cos θ_max). The cosine itself would lose a small sphere's bits.
@@ -288,7 +318,7 @@ fn seen_from<R: Real>(sphere: &Sphere, from: Vector3<R>) -> (R::Mask, R) {
 
 /// A direction within the cone that the sphere fills, and where it meets the near side.
 #[inline]
-fn sample_cone<R: Real>(sphere: &Sphere, from: Vector3<R>, (u, v): (R, R)) -> Cone<R> {
+fn sample_cone<R: Real>(sphere: &Sphere, from: Vector3<R>, (u, v): (R, R)) -> Drawn<R> {
     let (outside, one_minus_cos_max) = seen_from(sphere, from);
     let to = Vector3::splat(sphere.center) - from;
     let distance = to.length();
@@ -300,8 +330,8 @@ fn sample_cone<R: Real>(sphere: &Sphere, from: Vector3<R>, (u, v): (R, R)) -> Co
     let axis = to.scale(R::one() / distance);
     let dir = Frame::around(axis).to_world(local);
     let n_g = (from + dir.scale(reach) - Vector3::splat(sphere.center)).normalize_or(-axis);
-    Cone {
-        outside,
+    Drawn {
+        lanes: outside,
         position: Vector3::splat(sphere.center) + n_g.scale(radius),
         n_g,
         pdf: warp::cone_pdf(one_minus_cos_max),

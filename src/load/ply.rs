@@ -1,5 +1,7 @@
 //! PLY (ascii, little and big endian) to triangles. The only file that names `ply_rs_bw`.
 
+mod attributes;
+
 use std::{io::BufRead, path::Path};
 
 use glam::{Vec2, Vec3};
@@ -12,10 +14,19 @@ use ply_rs_bw::{
 };
 
 use super::{LoadError, Warning, text};
-use crate::scene::Mesh;
+use crate::scene::{Mesh, Per};
 
 /// Reads all faces as one mesh; uv is as in the file.
 pub(super) fn read_mesh(path: &Path, warnings: &mut Vec<Warning>) -> Result<Mesh, LoadError> {
+    read(path, false, warnings)
+}
+
+/// [`read_mesh`], with what textures may be made of.
+pub(super) fn read_attributed_mesh(path: &Path, warnings: &mut Vec<Warning>) -> Result<Mesh, LoadError> {
+    read(path, true, warnings)
+}
+
+fn read(path: &Path, attributed: bool, warnings: &mut Vec<Warning>) -> Result<Mesh, LoadError> {
     let bytes = text::read_bytes(path)?;
     let (header, payload) = read_header(path, &bytes)?;
     check_sizes(path, &header, payload)?;
@@ -24,6 +35,15 @@ pub(super) fn read_mesh(path: &Path, warnings: &mut Vec<Warning>) -> Result<Mesh
     let mut polygons = Polygons::default();
     let mut rest = payload;
     for element in header.elements.values() {
+        let values = |per, repeat: fn(usize) -> usize| match attributed {
+            true => attributes::read(path, &header, element, rest, per, repeat),
+            false => Ok(vec![]),
+        };
+        match element.name.as_str() {
+            "vertex" => mesh.attributes.extend(values(Per::Vertex, |_| 1)?),
+            "face" => mesh.attributes.extend(values(Per::Face, |corners| corners.saturating_sub(2))?),
+            _ => {}
+        }
         match element.name.as_str() {
             "vertex" => read_vertices(path, &header, element, &mut rest, &mut mesh)?,
             "face" => {

@@ -52,6 +52,7 @@ impl Solid {
             positions: directions.iter().zip(&values).map(position).collect(),
             normals: Vec::new(),
             uvs: (0..values.len()).map(uv).collect(),
+            attributes: vec![],
             triangles: triangles.collect(),
         };
         Some(Self { mesh, colors: hues(&values) })

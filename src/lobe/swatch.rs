@@ -39,7 +39,7 @@ impl Swatch {
     #[inline]
     pub fn seen_from<R: Real>(&self, wo: Vector3<R>) -> Appearance<'_, R> {
         let (zero, one) = (R::zero(), R::one());
-        let uv = (R::splat(0.5), R::splat(0.5));
+        let uv = (R::splat(0.5), R::splat(0.5)).into();
         let tangents = [vector3(one, zero, zero), vector3(zero, one, zero)];
         self.scene.materials.appearance(MaterialId(0), &self.scene.textures, &Point { wo, uv, tangents })
     }

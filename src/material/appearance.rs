@@ -14,15 +14,15 @@ use super::{
 };
 use crate::math::Frame;
 use crate::simd::{Mask, Real, Vector3, vector3};
-use crate::texture::TextureTable;
+use crate::texture::{Coordinates, TextureTable};
 
 /// Points of a surface, in their shading frames.
 #[derive(Clone, Copy, Debug)]
-pub struct Point<R> {
+pub struct Point<R: Real> {
     /// Towards the viewer.
     pub wo: Vector3<R>,
-    /// Texture coordinates.
-    pub uv: (R, R),
+    /// Where its textures are looked up.
+    pub uv: Coordinates<R>,
     /// ∂p/∂u and ∂p/∂v, where the material is oriented.
     pub tangents: [Vector3<R>; 2],
 }

@@ -5,7 +5,7 @@ use super::{
     Principled, RoughConductor, RoughDielectric, RoughPlastic, Toon, Ward, table::Tables,
 };
 use crate::simd::{Real, Vector3};
-use crate::texture::{TextureId, TextureTable};
+use crate::texture::{Coordinates, TextureId, TextureTable};
 
 /// A model with a texture, or a number, for each parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -111,7 +111,7 @@ impl Model {
         &self,
         tables: &'t Tables,
         textures: &TextureTable,
-        uv: (R, R),
+        uv: Coordinates<R>,
     ) -> Bsdf<'t, R> {
         let color = |id: TextureId| -> Vector3<R> { textures.fetch(id, uv) };
         let number = |id: TextureId| -> R { textures.fetch_number(id, uv) };

@@ -179,10 +179,10 @@ fn encode_png(picture: &Picture, preview: Preview) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// The pixels of a picture that has `R G B`.
+/// The pixels of a picture that has `R G B`, or `Y`, which is grey.
 fn colours<'a>(picture: &'a Picture, kind: &str) -> Result<impl Iterator<Item = [f32; 3]> + 'a, String> {
     let plane = |name| {
-        picture.plane(name).ok_or_else(|| {
+        picture.plane(name).or_else(|| picture.plane("Y")).ok_or_else(|| {
             let names: Vec<&str> = picture.channels.iter().map(|channel| channel.name.as_str()).collect();
             format!("{kind} files hold R, G, B, the picture has {}; write it as .exr", names.join(", "))
         })

@@ -85,7 +85,7 @@ impl Integrator for AovIntegrator {
         for c in &self.channels {
             match c.kind {
                 Aov::Depth => put(&[vertex.t]),
-                Aov::Uv => put(&[surface.uv.0, surface.uv.1]),
+                Aov::Uv => put(&[surface.uv.u, surface.uv.v]),
                 Aov::Position => put(&components(surface.position)),
                 Aov::GeoNormal => put(&components(surface.n_g)),
                 Aov::ShNormal => put(&components(surface.frame.n)),

@@ -37,8 +37,16 @@ impl<R: Real> Path<R> {
     /// Random numbers: the `index`-th of at most `count` pairs that the integrator uses at a vertex.
     #[inline]
     pub(super) fn random(&self, count: u32, index: u32) -> (R, R) {
-        // Pair 0 is the position in the pixel.
+        // Pair 0 is the position in the pixel: `on_film`.
         Sampler::<R>::new(self.key, self.sample).pair(1 + self.depth * count + index)
+    }
+}
+
+impl<R: Real> Path<R> {
+    /// Random numbers for the position in the pixel, or for what stands in its place.
+    #[inline]
+    pub(super) fn on_film(&self) -> (R, R) {
+        Sampler::<R>::new(self.key, self.sample).pair(0)
     }
 }
 

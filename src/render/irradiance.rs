@@ -4,8 +4,8 @@
 //! E(x, n) = ∫ L(x, ω) max(n·ω, 0) dω   W/m²
 //! ```
 //!
-//! At what the camera sees, whatever it is made of, on the side that is seen; or at one point, which
-//! every pixel then measures for itself, so that their spread is an honest error. Lights are sampled, the
+//! At what the camera sees, whatever it is made of, on the side that is seen; or at one point, or over a
+//! surface, which every pixel then measures for itself, so that their spread is an honest error. Lights are sampled, the
 //! cosine is sampled, both are weighed by the power heuristic \[VG95\], and what comes back from other
 //! surfaces is found by paths.
 
@@ -22,16 +22,22 @@ use crate::simd::{Mask, Real, Vector3};
 /// Pairs of random numbers at the receiver: light, direction.
 const PAIRS: u32 = 2;
 
-/// A point that receives light from one side.
+/// What receives light, from one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Receiver {
-    /// World space.
-    pub position: Vec3,
-    /// Unit length.
-    pub normal: Vec3,
+pub enum Receiver {
+    /// One point.
+    Point {
+        /// World space.
+        position: Vec3,
+        /// Unit length.
+        normal: Vec3,
+    },
+    /// The surface that the scene's sensor measures, each part of it by its area; nothing if the sensor is a
+    /// camera.
+    Sensor,
 }
 
-/// Irradiance of surfaces, or of one point.
+/// Irradiance of surfaces.
 pub(super) struct Irradiance {
     /// How light gets there; the receiver counts as a vertex.
     pub(super) paths: PathTracer,
@@ -80,17 +86,18 @@ impl Integrator for Irradiance {
     }
 
     fn begin<R: Real>(&self, scene: &Scene, path: &Path<R>, out: &mut impl Outgoing<R>) {
-        if let Some(Receiver { position, normal }) = self.receiver {
-            let n = Vector3::splat(normal);
+        let (position, extent, n) = match (self.receiver, &scene.metered) {
             // As far off what the point may lie upon as rounding could put that surface.
-            let extent = Vector3::splat(scene.extent());
-            self.receive(
-                scene,
-                &Departure { position: Vector3::splat(position), extent, n_g: n, n },
-                path,
-                out,
-            );
-        }
+            (Some(Receiver::Point { position, normal }), _) => {
+                (Vector3::splat(position), scene.extent(), Vector3::splat(normal))
+            }
+            (Some(Receiver::Sensor), Some(surface)) => {
+                let (position, n) = surface.sample(path.on_film());
+                (position, surface.extent, n)
+            }
+            _ => return,
+        };
+        self.receive(scene, &Departure { position, extent: Vector3::splat(extent), n_g: n, n }, path, out);
     }
 
     fn miss<R: Real>(&self, scene: &Scene, path: &Path<R>, ray: Line<R>, out: &mut impl Outgoing<R>) {

@@ -1,8 +1,8 @@
-//! A light meter: irradiance at one point, with its standard error.
+//! A light meter: irradiance at one point, or over a surface, with its standard error.
 //!
 //! Samples of one pixel are stratified, so their spread says nothing of the error of their mean. The
 //! meter therefore measures with many pixels, each with random numbers of its own and all at the same
-//! point: what they read is independent, and the error of the mean is that of any mean \[PJH23\] (section
+//! place: what they read is independent, and the error of the mean is that of any mean \[PJH23\] (section
 //! 2.1).
 
 use glam::DVec3;
@@ -27,21 +27,15 @@ pub struct Reading {
 }
 
 /// Measures on the current rayon pool with at least `samples`. Paths are as long as the scene's integrator
-/// allows; the receiver counts as a vertex. The scene's film and sampler are not used but for the seed.
+/// allows; a point that receives counts as a vertex, a sensor does not. The scene's film and sampler are not
+/// used but for the seed.
 pub fn measure(mut scene: Scene, receiver: Receiver, samples: u64, settings: &Settings) -> Reading {
     scene.film = scene::Film::new(SIDE, SIDE);
     scene.filter = Filter::BOX;
     scene.aovs.clear();
     let each = samples.div_ceil(u64::from(SIDE * SIDE)).clamp(1, u32::MAX.into());
     scene.sampler.sample_count = each as u32;
-    let (max_depth, rr_depth) = match scene.integrator {
-        scene::Integrator::Path { max_depth, rr_depth, .. }
-        | scene::Integrator::Irradiance { max_depth, rr_depth } => (max_depth, rr_depth),
-        scene::Integrator::Direct { .. } => (Some(2), 5),
-        scene::Integrator::Whitted { max_depth } => (Some(max_depth), 5),
-        scene::Integrator::AmbientOcclusion { .. } | scene::Integrator::Aov { .. } => (None, 5),
-    };
-    let integrator = Irradiance { paths: paths(max_depth, rr_depth, false), receiver: Some(receiver) };
+    let integrator = integrator(&scene.integrator, receiver);
     let rendered = render_with(&scene, &integrator, settings, &|_| {});
     let Statistics { samples, invalid_samples, .. } = rendered.statistics;
     let bands = ["R", "G", "B"].map(|name| statistics(rendered.picture.plane(name).unwrap_or_default()));
@@ -51,6 +45,22 @@ pub fn measure(mut scene: Scene, receiver: Receiver, samples: u64, settings: &Se
         samples,
         invalid_samples,
     }
+}
+
+/// What a receiver receives by paths as long as those of another integrator.
+pub(super) fn integrator(as_long: &scene::Integrator, receiver: Receiver) -> Irradiance {
+    let (max_depth, rr_depth) = match *as_long {
+        scene::Integrator::Path { max_depth, rr_depth, .. }
+        | scene::Integrator::Irradiance { max_depth, rr_depth } => (max_depth, rr_depth),
+        scene::Integrator::Direct { .. } => (Some(2), 5),
+        scene::Integrator::Whitted { max_depth } => (Some(max_depth), 5),
+        scene::Integrator::AmbientOcclusion { .. } | scene::Integrator::Aov { .. } => (None, 5),
+    };
+    // Where it stands in a camera's place, what it sees is the first vertex.
+    let before = u32::from(receiver == Receiver::Sensor);
+    let longer = |depth: u32| depth.saturating_add(before);
+    let paths = paths(max_depth.map(longer), longer(rr_depth), false);
+    Irradiance { paths, receiver: Some(receiver) }
 }
 
 /// The mean of independent readings, and its standard error.

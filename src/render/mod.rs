@@ -3,6 +3,7 @@
 //! Tiles are handed to the threads of the current rayon pool. A tile is rendered by the wavefront (eight
 //! rays at a time) or by the reference (one), and both call the same integrators.
 
+mod alpha;
 mod ao;
 mod aov;
 mod camera_rays;
@@ -16,6 +17,7 @@ pub mod measure;
 pub mod meter;
 pub mod part;
 mod path;
+mod pixel_format;
 mod ray_classes;
 mod reference;
 mod rows;
@@ -79,7 +81,7 @@ pub struct Progress {
 /// A finished render.
 #[derive(Clone, Debug, Default)]
 pub struct Rendered {
-    /// `R G B`, or the channels of the AOV integrator.
+    /// The channels of the film's [`PixelFormat`](scene::PixelFormat), or those of the AOV integrator.
     pub picture: Picture,
     /// What it took.
     pub statistics: Statistics,
@@ -92,6 +94,9 @@ trait Task {
 }
 
 fn with_integrator<T: Task>(scene: &Scene, task: T) -> T::Done {
+    if scene.has_meter() {
+        return task.run(&meter::integrator(&scene.integrator, Receiver::Sensor));
+    }
     match scene.integrator.clone() {
         scene::Integrator::Path { max_depth, rr_depth, hide_emitters } => {
             task.run(&paths(max_depth, rr_depth, hide_emitters))
@@ -115,7 +120,8 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &(dyn Fn(Progress) +
             render_with(self.0, integrator, self.1, self.2)
         }
     }
-    with_integrator(scene, Render(scene, settings, progress))
+    let rendered = with_integrator(scene, Render(scene, settings, progress));
+    pixel_format::formatted(scene, settings, rendered)
 }
 
 impl Frame {

@@ -16,8 +16,8 @@ mod texture;
 pub use emitter::Emitter;
 pub use integrator::{Aov, AovChannel, Integrator};
 pub use material::{Distribution, Material, MerlTable, Metal, Principled, Ramp, Relief, Roughness, Stop};
-pub use sensor::{Crop, Film, Projection, ReconstructionFilter, Sampler, Sensor};
-pub use shape::{Geometry, GroupIndex, Instance, Mesh, Shape, ShapeGroup};
+pub use sensor::{Crop, Film, PixelFormat, Projection, ReconstructionFilter, Sampler, Sensor};
+pub use shape::{Attribute, Geometry, GroupIndex, Instance, Mesh, Per, Shape, ShapeGroup};
 pub use texture::{Filter, Texture, Wrap};
 
 /// A linear sRGB triple: reflectance, radiance, or any other spectral quantity in three bands.

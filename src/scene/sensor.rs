@@ -52,6 +52,12 @@ pub enum Projection {
     },
     /// Parallel rays; the film's width spans camera x in [-1, 1].
     Orthographic,
+    /// No camera: the mean irradiance of a shape's surface, on the side of its normal, in W/m². Of the other
+    /// fields only the film, which has one pixel, and the sampler count.
+    IrradianceMeter {
+        /// Place in [`SceneDescription::shapes`](super::SceneDescription::shapes).
+        shape: u32,
+    },
 }
 
 /// Size of the picture in pixels, and how samples become pixels.
@@ -65,12 +71,14 @@ pub struct Film {
     pub crop: Option<Crop>,
     /// What a pixel sees.
     pub filter: ReconstructionFilter,
+    /// The channels of the picture, where it shows light.
+    pub format: PixelFormat,
 }
 
 impl Film {
     /// All of a film of this size, by the box filter.
     pub const fn new(width: u32, height: u32) -> Self {
-        Self { width, height, crop: None, filter: ReconstructionFilter::Box }
+        Self { width, height, crop: None, filter: ReconstructionFilter::Box, format: PixelFormat::Rgb }
     }
 
     /// The part that is rendered.
@@ -83,6 +91,21 @@ impl Default for Film {
     fn default() -> Self {
         Self::new(768, 576)
     }
+}
+
+/// What is stored of a pixel. Luminance is the Y of linear sRGB; alpha is the share of the pixel in which the
+/// camera sees a surface, whatever it is made of, or an environment that the `path` integrator shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PixelFormat {
+    /// `R G B`.
+    #[default]
+    Rgb,
+    /// `R G B A`.
+    Rgba,
+    /// `Y`.
+    Luminance,
+    /// `Y A`.
+    LuminanceAlpha,
 }
 
 /// A rectangle of pixels of a [`Film`]. Its pixels are to the bit what they are in the whole picture.

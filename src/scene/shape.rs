@@ -94,12 +94,48 @@ pub struct Mesh {
     pub uvs: Vec<Vec2>,
     /// Corners, counter-clockwise from the side of the normal.
     pub triangles: Vec<[u32; 3]>,
+    /// What textures may be made of; names differ.
+    pub attributes: Vec<Attribute>,
+}
+
+/// Values on a mesh.
+#[derive(Clone, PartialEq)]
+pub struct Attribute {
+    /// `vertex_…` or `face_…`.
+    pub name: String,
+    /// What has a value.
+    pub per: Per,
+    /// Finite; a single number is grey.
+    pub values: Vec<Rgb>,
+}
+
+/// What the values of an [`Attribute`] belong to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Per {
+    /// One a position, linear between them.
+    Vertex,
+    /// One a triangle.
+    Face,
+}
+
+/// A digest of the values.
+impl fmt::Debug for Attribute {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, per, values } = self;
+        let digest = Digest::default().floats(values.iter().flat_map(Vec3::to_array));
+        f.debug_struct("Attribute")
+            .field("name", name)
+            .field("per", per)
+            .field("values", &values.len())
+            .field("digest", &digest.value())
+            .finish()
+    }
 }
 
 /// Sizes, and a digest of the numbers, of which there may be millions.
 impl fmt::Debug for Mesh {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { positions, normals, uvs, triangles } = self;
+        let Self { positions, normals, uvs, triangles, attributes } = self;
         let vectors = positions.iter().chain(normals).flat_map(Vec3::to_array);
         let mut digest = Digest::default().floats(vectors).floats(uvs.iter().flat_map(Vec2::to_array));
         triangles.iter().flatten().for_each(|&index| digest.word(index));
@@ -109,6 +145,7 @@ impl fmt::Debug for Mesh {
             .field("uvs", &uvs.len())
             .field("triangles", &triangles.len())
             .field("digest", &digest.value())
+            .field("attributes", attributes)
             .finish()
     }
 }

@@ -32,6 +32,13 @@ pub enum Texture {
         /// Applied to uv first.
         to_uv: DAffine2,
     },
+    /// What meshes say of their vertices or faces. Surfaces without it have the value 0.
+    MeshAttribute {
+        /// Of an [`Attribute`](super::Attribute).
+        name: String,
+        /// Factor on its values.
+        scale: f32,
+    },
 }
 
 /// How the texels about a point are combined.

@@ -1,16 +1,57 @@
 //! Values that vary over a surface, fetched for many lanes at once.
 
+mod attribute;
 mod bitmap;
 
+pub use attribute::{Column, MeshAttribute};
 pub use bitmap::{Bitmap, Filter, Wrap};
 
 use glam::{DAffine2, Vec3};
 
-use crate::simd::{Real, Vector3};
+use crate::simd::{Bits, Real, Vector3};
 
 /// Which texture of a [`TextureTable`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct TextureId(pub u32);
+
+/// Where textures are looked up.
+#[derive(Clone, Copy, Debug)]
+pub struct Coordinates<R: Real> {
+    /// Grows along ∂p/∂u.
+    pub u: R,
+    /// Grows along ∂p/∂v.
+    pub v: R,
+    /// Which mesh it is, among those with attributes; no other surface has a number that one of them has.
+    pub mesh: R::Bits,
+    /// Which triangle of it.
+    pub face: R::Bits,
+    /// Barycentric, of the triangle's second and third corner.
+    pub weights: (R, R),
+}
+
+impl<R: Real> From<(R, R)> for Coordinates<R> {
+    /// Of a surface without attributes.
+    #[inline]
+    fn from((u, v): (R, R)) -> Self {
+        let none = R::Bits::splat(u32::MAX);
+        Self { u, v, mesh: none, face: none, weights: (R::zero(), R::zero()) }
+    }
+}
+
+impl<R: Real> Coordinates<R> {
+    /// `if mask { a } else { b }`, lane by lane.
+    #[inline]
+    pub fn select(mask: R::Mask, a: Self, b: Self) -> Self {
+        let select = |a, b| R::select(mask, a, b);
+        Self {
+            u: select(a.u, b.u),
+            v: select(a.v, b.v),
+            mesh: R::Bits::select(mask, a.mesh, b.mesh),
+            face: R::Bits::select(mask, a.face, b.face),
+            weights: (select(a.weights.0, b.weights.0), select(a.weights.1, b.weights.1)),
+        }
+    }
+}
 
 /// An affine map of texture coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,6 +101,8 @@ pub enum Texture {
         /// Applied first.
         map: UvMap,
     },
+    /// Values on meshes.
+    MeshAttribute(MeshAttribute),
 }
 
 /// All textures of a scene.
@@ -82,37 +125,38 @@ impl TextureTable {
         TextureId(place as u32)
     }
 
-    /// The colour of one texture at each lane's (u, v).
+    /// The colour of one texture where each lane looks it up.
     #[inline]
-    pub fn fetch<R: Real>(&self, id: TextureId, uv: (R, R)) -> Vector3<R> {
+    pub fn fetch<R: Real>(&self, id: TextureId, at: Coordinates<R>) -> Vector3<R> {
         match &self.textures[id.0 as usize] {
             Texture::Constant(color) => Vector3::splat(*color),
             Texture::Checkerboard { colors, map } => {
-                let (u, v) = map.apply(uv);
+                let (u, v) = map.apply((at.u, at.v));
                 let high = |x: R| (x - x.floor()).gt(R::splat(0.5));
                 let (u, v) = (high(u), high(v));
                 let same = (u & v) | (!u & !v);
                 Vector3::select(same, Vector3::splat(colors[0]), Vector3::splat(colors[1]))
             }
-            Texture::Bitmap { bitmap, map } => bitmap.fetch(map.apply(uv)),
+            Texture::Bitmap { bitmap, map } => bitmap.fetch(map.apply((at.u, at.v))),
+            Texture::MeshAttribute(attribute) => attribute.fetch(at),
         }
     }
 
     /// A texture as a number: its luminance. Constants are grey, and taken as they are.
     #[inline]
-    pub fn fetch_number<R: Real>(&self, id: TextureId, uv: (R, R)) -> R {
+    pub fn fetch_number<R: Real>(&self, id: TextureId, at: Coordinates<R>) -> R {
         match &self.textures[id.0 as usize] {
             Texture::Constant(color) => R::splat(color.x),
-            _ => luminance(self.fetch(id, uv)),
+            _ => luminance(self.fetch(id, at)),
         }
     }
 
     /// How fast the number changes with u and with v: 0 but for a bilinear bitmap.
     #[inline]
-    pub fn gradient<R: Real>(&self, id: TextureId, uv: (R, R)) -> (R, R) {
+    pub fn gradient<R: Real>(&self, id: TextureId, at: Coordinates<R>) -> (R, R) {
         match &self.textures[id.0 as usize] {
             Texture::Bitmap { bitmap, map } if bitmap.filter == Filter::Bilinear => {
-                let [along_u, along_v] = bitmap.gradient(map.apply(uv));
+                let [along_u, along_v] = bitmap.gradient(map.apply((at.u, at.v)));
                 map.pull_back((luminance(along_u), luminance(along_v)))
             }
             _ => (R::zero(), R::zero()),
@@ -144,27 +188,27 @@ mod tests {
     fn gradients_are_differences() {
         let (table, id) = ramp();
         let (u, v) = (0.21, 0.43);
-        let (along_u, along_v) = table.gradient::<f32>(id, (u, v));
+        let (along_u, along_v) = table.gradient::<f32>(id, (u, v).into());
         // 0.25 a texel, four texels a unit, twice as fast by the map.
         assert!((along_u - 2.0).abs() < 1e-5 && (along_v - 0.25).abs() < 1e-5, "{along_u} {along_v}");
         let step = 0.01;
-        let at = |u, v| table.fetch_number::<f32>(id, (u, v));
+        let at = |u, v| table.fetch_number::<f32>(id, (u, v).into());
         assert!(((at(u + step, v) - at(u, v)) / step - along_u).abs() < 1e-3);
         assert!(((at(u, v + step) - at(u, v)) / step - along_v).abs() < 1e-3);
-        let lanes = table.gradient(id, (f32x8::splat(u), f32x8::splat(v)));
+        let lanes = table.gradient(id, (f32x8::splat(u), f32x8::splat(v)).into());
         assert_eq!((lanes.0.lane(3), lanes.1.lane(7)), (along_u, along_v));
         let flat = TextureTable { textures: vec![Texture::Constant(Vec3::ONE)] };
-        assert_eq!(flat.gradient::<f32>(TextureId(0), (u, v)), (0.0, 0.0));
+        assert_eq!(flat.gradient::<f32>(TextureId(0), (u, v).into()), (0.0, 0.0));
     }
 
     #[test]
     fn numbers_are_luminances() {
         let (table, id) = ramp();
-        let grey = table.fetch::<f32>(id, (0.2, 0.6)).x;
-        assert!((table.fetch_number::<f32>(id, (0.2, 0.6)) - grey).abs() < 1e-6);
+        let grey = table.fetch::<f32>(id, (0.2, 0.6).into()).x;
+        assert!((table.fetch_number::<f32>(id, (0.2, 0.6).into()) - grey).abs() < 1e-6);
         let mut table = TextureTable::default();
         let id = table.add(Texture::Constant(Vec3::splat(0.1)));
-        assert_eq!(table.fetch_number::<f32>(id, (0.0, 0.0)), 0.1);
+        assert_eq!(table.fetch_number::<f32>(id, (0.0, 0.0).into()), 0.1);
     }
 
     #[test]
@@ -175,8 +219,8 @@ mod tests {
         for (u, v, want) in
             [(0.01, 0.01, 1.0), (0.1, 0.01, 0.0), (0.1, 0.2, 1.0), (-0.01, 0.01, 0.0), (1.01, 0.01, 1.0)]
         {
-            assert_eq!(table.fetch::<f32>(id, (u, v)).x, want, "{u} {v}");
-            assert_eq!(table.fetch(id, (f32x8::splat(u), f32x8::splat(v))).x.lane(5), want);
+            assert_eq!(table.fetch::<f32>(id, (u, v).into()).x, want, "{u} {v}");
+            assert_eq!(table.fetch(id, (f32x8::splat(u), f32x8::splat(v)).into()).x.lane(5), want);
         }
     }
 

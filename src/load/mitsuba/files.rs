@@ -2,7 +2,7 @@
 
 use std::{collections::HashMap, fs, path::PathBuf, sync::Arc};
 
-use super::properties::Object;
+use super::{properties::Object, texture::Range};
 use crate::{
     load::{LoadError, Warning, brdf, obj, ply, serialized},
     picture::{self, Encoding, Picture},
@@ -16,6 +16,10 @@ pub(super) struct Files {
     /// By path and whether the numbers are raw.
     pictures: HashMap<(PathBuf, bool), Arc<Picture>>,
     tables: HashMap<PathBuf, Arc<MerlTable>>,
+    /// Are meshes read with what textures may be made of?
+    pub(super) attributed: bool,
+    /// What the values of a `mesh_attribute` may be, by its place in the document.
+    pub(super) ranges: HashMap<usize, Range>,
     pub(super) warnings: Vec<Warning>,
 }
 
@@ -55,6 +59,7 @@ impl Files {
         }
         let (mut mesh, face_normals) = match shape.plugin() {
             "obj" => (obj::read_mesh(&key.path, &mut self.warnings)?, false),
+            "ply" if self.attributed => (ply::read_attributed_mesh(&key.path, &mut self.warnings)?, false),
             "ply" => (ply::read_mesh(&key.path, &mut self.warnings)?, false),
             _ => {
                 let read = serialized::read_mesh(&key.path, key.index)?;

@@ -3,7 +3,7 @@
 use super::{files::Files, properties::Object, vocabulary::Class};
 use crate::{
     load::LoadError,
-    scene::{Crop, Film, ReconstructionFilter},
+    scene::{Crop, Film, PixelFormat, ReconstructionFilter},
 };
 
 /// Pictures wider or higher than this are taken for slips.
@@ -29,13 +29,13 @@ pub(super) fn build(sensor: Object, files: &mut Files) -> Result<Film, LoadError
     let width = film.count("width", default.width, 1, MAX_SIDE)?;
     let height = film.count("height", default.height, 1, MAX_SIDE)?;
     let crop = crop(film, width, height)?;
-    formats(film, files)?;
+    let format = format(film, files)?;
     // Samples are drawn about each pixel, at the border as elsewhere: nothing is there to be chosen.
     film.boolean("sample_border", false)?;
     film.boolean("compensate", false)?;
     let filter = film.child(Class::RFilter)?.map_or(Ok(default.filter), filter)?;
     film.finish()?;
-    Ok(Film { width, height, crop, filter })
+    Ok(Film { width, height, crop, filter, format })
 }
 
 fn crop(film: Object, width: u32, height: u32) -> Result<Option<Crop>, LoadError> {
@@ -61,21 +61,24 @@ fn crop(film: Object, width: u32, height: u32) -> Result<Option<Crop>, LoadError
     Ok(given.then_some(crop))
 }
 
-/// Of the file that Mitsuba would write; ours is chosen on the command line and has all bits.
-fn formats(film: Object, files: &mut Files) -> Result<(), LoadError> {
+/// The channels of the picture. Which file holds them is chosen on the command line, and it has all bits.
+fn format(film: Object, files: &mut Files) -> Result<PixelFormat, LoadError> {
     film.choice("file_format", &[("openexr", ()), ("exr", ()), ("rgbe", ()), ("pfm", ())], ())?;
     film.choice("component_format", &[("float16", ()), ("float32", ()), ("uint32", ())], ())?;
-    let format = film.choice(
-        "pixel_format",
-        &["rgb", "rgba", "luminance", "luminance_alpha", "xyz", "xyza"].map(|format| (format, format)),
-        "rgb",
-    )?;
-    if format != "rgb" {
-        let written =
-            format!("the pixel format `{format}` is not written: the picture has the channels R, G and B");
-        files.warnings.push(film.span("pixel_format").warning(written));
+    let known = [
+        ("rgb", Some(PixelFormat::Rgb)),
+        ("rgba", Some(PixelFormat::Rgba)),
+        ("luminance", Some(PixelFormat::Luminance)),
+        ("luminance_alpha", Some(PixelFormat::LuminanceAlpha)),
+        ("xyz", None),
+        ("xyza", None),
+    ];
+    let format = film.choice("pixel_format", &known, Some(PixelFormat::Rgb))?;
+    if format.is_none() {
+        let message = "the tristimulus values of this format are not written: the picture has R, G and B";
+        files.warnings.push(film.span("pixel_format").warning(message));
     }
-    Ok(())
+    Ok(format.unwrap_or_default())
 }
 
 fn filter(object: Object) -> Result<ReconstructionFilter, LoadError> {

@@ -61,6 +61,11 @@ impl Builder {
                     .error(format!("a shape in a `{GROUP}` can't shine"))
                     .help("let the shape that shines stand in the scene itself, once for each place"));
             }
+            if let Some(sensor) = shape.children(Class::Sensor).first() {
+                return Err(sensor
+                    .error(format!("a shape in a `{GROUP}` can't be measured"))
+                    .help("let the shape that is measured stand in the scene itself"));
+            }
             group.shapes.push(self.shape(shape)?);
         }
         object.finish()?;

@@ -18,6 +18,8 @@ mod film;
 mod folders;
 mod group;
 mod integrator;
+mod mesh_attribute;
+mod meter;
 mod parameters;
 mod presets;
 mod properties;
@@ -47,6 +49,7 @@ use crate::scene::{Emitter, Integrator, Material, MaterialIndex, Rgb, SceneDescr
 pub(super) fn read_scene(path: &Path, defines: &[(String, String)]) -> Result<Loaded, LoadError> {
     let document = reader::read(path, defines)?;
     let mut builder = Builder::default();
+    builder.files.attributed = document.nodes.iter().any(|node| node.plugin == mesh_attribute::PLUGIN);
     builder.scene(Object::root(&document))?;
     let mut warnings = builder.files.warnings;
     warnings.extend(document.warnings.take());
@@ -59,6 +62,8 @@ struct Builder {
     files: Files,
     materials: Materials,
     groups: group::Groups,
+    /// Is there a sensor yet?
+    sees: bool,
 }
 
 impl Builder {
@@ -82,10 +87,17 @@ impl Builder {
                     }
                 }
                 _ => {
+                    self.meter(shape)?;
                     let shape = self.shape(shape)?;
                     self.description.shapes.push(shape);
                 }
             }
+        }
+        if !self.sees {
+            return Err(scene.error("the scene has no sensor").label("nothing to look through").help(
+                "write <sensor type=\"perspective\"> with a `fov`, a `to_world` with a `lookat`, a `sampler` \
+                 and a `film`",
+            ));
         }
         // An `area` emitter that shapes refer to may be defined here without shining here.
         let is_definition = |emitter: &Object| emitter.plugin() == "area" && emitter.is_referenced();
@@ -107,21 +119,20 @@ impl Builder {
         Ok(())
     }
 
-    fn shape(&mut self, shape: Object) -> Result<Shape, LoadError> {
-        shape::build(shape, &mut self.files, |files, bsdf, shines| match bsdf {
+    fn shape(&mut self, object: Object) -> Result<Shape, LoadError> {
+        let shape = shape::build(object, &mut self.files, |files, bsdf, shines| match bsdf {
             Some(bsdf) => self.materials.index_of(bsdf, files),
             None => Ok(self.materials.default(shines)),
-        })
+        })?;
+        mesh_attribute::check(object, &shape.geometry, &self.files)?;
+        Ok(shape)
     }
 
     fn sensor(&mut self, scene: Object) -> Result<(), LoadError> {
         let sensors = scene.children(Class::Sensor);
-        let Some((&first, others)) = sensors.split_first() else {
-            return Err(scene.error("the scene has no sensor").label("nothing to look through").help(
-                "write <sensor type=\"perspective\"> with a `fov`, a `to_world` with a `lookat`, a `sampler` \
-                 and a `film`",
-            ));
-        };
+        // Or a shape has one.
+        let Some((&first, others)) = sensors.split_first() else { return Ok(()) };
+        self.sees = true;
         self.description.sensor = sensor::build(first, &mut self.files)?;
         for other in others {
             self.files.warnings.push(other.warning("the first sensor is used, this one is not"));

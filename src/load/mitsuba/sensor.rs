@@ -1,6 +1,6 @@
 //! Cameras and samplers.
 
-use super::{files::Files, film, properties::Object, transform, vocabulary::Class};
+use super::{files::Files, film, meter, properties::Object, transform, vocabulary::Class};
 use crate::{
     load::LoadError,
     scene::{Film, Projection, Sampler, Sensor},
@@ -21,6 +21,11 @@ enum Axis {
 pub(super) fn build(object: Object, files: &mut Files) -> Result<Sensor, LoadError> {
     if !object.class().supported().contains(&object.plugin()) {
         return Err(object.unknown_plugin());
+    }
+    if object.plugin() == meter::PLUGIN {
+        return Err(object
+            .error(format!("an `{}` stands inside the shape that it measures", meter::PLUGIN))
+            .help("write <shape type=\"…\"><sensor type=\"irradiancemeter\">…</sensor></shape>"));
     }
     let to_world = object.to_world()?;
     let film = film::build(object, files)?;
@@ -121,7 +126,7 @@ fn span_of_width(tangent: f64, axis: Axis, aspect: f64) -> f64 {
     2.0 * libm::atan(half_width)
 }
 
-fn sampler(sensor: Object, files: &mut Files) -> Result<Sampler, LoadError> {
+pub(super) fn sampler(sensor: Object, files: &mut Files) -> Result<Sampler, LoadError> {
     let default = Sampler::default();
     let Some(sampler) = sensor.child(Class::Sampler)? else { return Ok(default) };
     if !sampler.class().supported().contains(&sampler.plugin()) {

@@ -1,10 +1,11 @@
 //! Textures, and parameters that may be textures.
 
-use super::{colour, document::Value, files::Files, properties::Object, transform, vocabulary::Class};
+use super::{
+    colour, document::Value, files::Files, mesh_attribute, properties::Object, transform, vocabulary::Class,
+};
 pub(super) use crate::scene::Texture;
 use crate::{
     load::LoadError,
-    picture::Picture,
     scene::{Filter, Rgb, Wrap},
 };
 
@@ -20,14 +21,13 @@ pub(super) enum Range {
 }
 
 impl Range {
-    /// The first sample out of range.
-    fn outside(self, picture: &Picture) -> Option<f32> {
+    /// The first value out of range.
+    pub(super) fn outside(self, values: &mut impl Iterator<Item = f32>) -> Option<f32> {
         let most = if self == Self::Unit { 1.0 } else { f32::MAX };
-        let mut samples = picture.channels.iter().flat_map(|channel| &channel.samples);
-        samples.find(|sample| !(0.0..=most).contains(*sample)).copied()
+        values.find(|value| !(0.0..=most).contains(value))
     }
 
-    fn help(self) -> &'static str {
+    pub(super) fn help(self) -> &'static str {
         match self {
             Self::Unit => "reflectances lie between 0 and 1",
             Self::Coefficient | Self::Positive => "it must not be negative",
@@ -92,6 +92,7 @@ pub(super) fn build(object: Object, range: Range, files: &mut Files) -> Result<T
             to_uv: transform::planar(object.transform("to_uv")?),
         },
         "bitmap" => bitmap(object, range, files)?,
+        mesh_attribute::PLUGIN => mesh_attribute::build(object, range, files)?,
         _ => return Err(object.unknown_plugin()),
     };
     object.finish()?;
@@ -108,7 +109,8 @@ fn field(object: Object, name: &'static str, default: f32) -> Result<Rgb, LoadEr
 fn bitmap(object: Object, range: Range, files: &mut Files) -> Result<Texture, LoadError> {
     let raw = object.boolean("raw", false)?;
     let picture = files.picture(object, raw)?;
-    if let Some(worst) = range.outside(&picture) {
+    let mut samples = picture.channels.iter().flat_map(|channel| &channel.samples).copied();
+    if let Some(worst) = range.outside(&mut samples) {
         return Err(object
             .error_at("filename", format!("the picture has the value {worst}, which is out of range"))
             .help(range.help()));

@@ -41,7 +41,7 @@ impl Class {
         match self {
             Self::Scene => &[],
             Self::Integrator => &["path", "direct", "aov", "moment", "whitted", "ao", "irradiance"],
-            Self::Sensor => &["perspective", "thinlens", "orthographic"],
+            Self::Sensor => &["perspective", "thinlens", "orthographic", "irradiancemeter"],
             Self::Sampler => &["independent", "stratified", "multijitter", "orthogonal", "ldsampler"],
             Self::Film => &["hdrfilm"],
             Self::RFilter => &["box", "gaussian", "tent", "mitchell", "catmullrom", "lanczos"],
@@ -64,7 +64,7 @@ impl Class {
                 "toon",
                 "merl",
             ],
-            Self::Texture => &["bitmap", "checkerboard"],
+            Self::Texture => &["bitmap", "checkerboard", "mesh_attribute"],
             Self::Emitter => &["area", "point", "spot", "directional", "constant", "envmap", "shlight"],
             Self::Shape => &[
                 "sphere",
@@ -97,7 +97,7 @@ impl Class {
                 "prb_projective",
                 "direct_projective",
             ],
-            Self::Sensor => &["distant", "radiancemeter", "irradiancemeter", "batch"],
+            Self::Sensor => &["distant", "radiancemeter", "batch"],
             Self::Sampler => &[],
             Self::Film => &["specfilm"],
             Self::RFilter => &[],
@@ -113,7 +113,7 @@ impl Class {
                 "measured_polarized",
                 "pplastic",
             ],
-            Self::Texture => &["mesh_attribute", "volume"],
+            Self::Texture => &["volume"],
             Self::Emitter => &["sunsky", "projector", "directionalarea", "volumelight", "sky", "sun"],
             Self::Shape => &[
                 "blender",

@@ -31,7 +31,7 @@ fn factor(texture: u32, complement: bool) -> Factor {
 fn look<'t, R: Real>((textures, table): &'t (TextureTable, MaterialTable), wo: Vec3) -> Appearance<'t, R> {
     let point = Point {
         wo: Vector3::splat(wo),
-        uv: (R::zero(), R::zero()),
+        uv: (R::zero(), R::zero()).into(),
         tangents: [Vector3::splat(Vec3::X), Vector3::splat(Vec3::Y)],
     };
     table.appearance(MaterialId(0), textures, &point)

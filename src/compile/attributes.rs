@@ -1,0 +1,59 @@
+//! Meshes with attributes, numbered so that a texture finds the values of the one that was hit.
+
+use std::{collections::HashMap, sync::Arc};
+
+use crate::scene::{Geometry, Mesh, Per, SceneDescription};
+use crate::texture::{Column, MeshAttribute};
+
+/// The number of a surface that is no mesh with attributes.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// A mesh, and its corners for all textures that are made of it.
+struct Attributed {
+    mesh: Arc<Mesh>,
+    corners: Arc<[[u32; 3]]>,
+}
+
+/// Each mesh once, however many shapes place it.
+#[derive(Default)]
+pub(super) struct AttributedMeshes {
+    meshes: Vec<Attributed>,
+    numbers: HashMap<*const Mesh, u32>,
+}
+
+impl AttributedMeshes {
+    /// Those of the scene and of its groups.
+    pub(super) fn new(description: &SceneDescription) -> Self {
+        let mut all = Self::default();
+        let grouped = description.groups.iter().flat_map(|group| &group.shapes);
+        for shape in description.shapes.iter().chain(grouped) {
+            if let Geometry::Mesh { mesh, .. } = &shape.geometry
+                && !mesh.attributes.is_empty()
+                && !all.numbers.contains_key(&Arc::as_ptr(mesh))
+            {
+                all.numbers.insert(Arc::as_ptr(mesh), all.meshes.len() as u32);
+                let corners = mesh.triangles.as_slice().into();
+                all.meshes.push(Attributed { mesh: Arc::clone(mesh), corners });
+            }
+        }
+        all
+    }
+
+    /// Of a mesh, or [`NONE`].
+    pub(super) fn number(&self, mesh: &Arc<Mesh>) -> u32 {
+        self.numbers.get(&Arc::as_ptr(mesh)).copied().unwrap_or(NONE)
+    }
+
+    /// The attribute of a name, times `scale`, of all meshes.
+    pub(super) fn texture(&self, name: &str, scale: f32) -> MeshAttribute {
+        let column = |Attributed { mesh, corners }: &Attributed| {
+            let attribute = mesh.attributes.iter().find(|attribute| attribute.name == name)?;
+            let values = attribute.values.iter().map(|value| scale * *value).collect();
+            Some(match attribute.per {
+                Per::Vertex => Column::Vertices { corners: Arc::clone(corners), values },
+                Per::Face => Column::Faces(values),
+            })
+        };
+        MeshAttribute { columns: self.meshes.iter().map(column).collect() }
+    }
+}
