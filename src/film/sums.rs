@@ -33,6 +33,14 @@ impl Sums {
         Self { values: vec![0.0; pixels * channels], weights: vec![0.0; pixels], counts: vec![0; pixels] }
     }
 
+    /// The same memory, of no samples.
+    pub(super) fn cleared(mut self) -> Self {
+        self.values.fill(0.0);
+        self.weights.fill(0.0);
+        self.counts.fill(0);
+        self
+    }
+
     #[inline]
     pub(super) fn add(&mut self, pixel: usize, weight: f32, value: impl Fn(usize) -> f32) {
         let pixels = self.counts.len();
@@ -89,16 +97,20 @@ impl Node {
     }
 }
 
-/// Puts a node behind those it follows, and joins neighbours for as long as there are any.
-pub(super) fn push(nodes: &mut Vec<Node>, mut node: Node) {
+/// Puts a node behind those it follows, and joins neighbours for as long as there are any. Returns sums that are
+/// not needed any more, if there are any: their memory is.
+pub(super) fn push(nodes: &mut Vec<Node>, mut node: Node) -> Option<Sums> {
+    let mut free = None;
     while let Some(left) =
         nodes.pop_if(|left| left.level == node.level && left.index % 2 == 0 && left.index + 1 == node.index)
     {
         let mut sums = left.sums;
         sums.absorb(&node.sums);
+        free = Some(node.sums);
         node = Node { level: node.level + 1, index: node.index / 2, sums };
     }
     nodes.push(node);
+    free
 }
 
 #[cfg(test)]
@@ -113,7 +125,7 @@ mod tests {
 
     fn pushed(blocks: impl IntoIterator<Item = u32>) -> Vec<Node> {
         let mut nodes = Vec::new();
-        blocks.into_iter().for_each(|index| push(&mut nodes, block(index)));
+        blocks.into_iter().for_each(|index| drop(push(&mut nodes, block(index))));
         nodes
     }
 
@@ -135,7 +147,7 @@ mod tests {
             let whole = pushed(0..count);
             for cut in 0..=count {
                 let mut joined = pushed(0..cut);
-                pushed(cut..count).into_iter().for_each(|node| push(&mut joined, node));
+                pushed(cut..count).into_iter().for_each(|node| drop(push(&mut joined, node)));
                 assert_eq!(joined, whole, "{cut} of {count}");
             }
         }

@@ -104,13 +104,14 @@ impl TileFilm {
     pub fn finish_sample(&mut self) {
         self.samples.end += 1;
         if self.samples.end.is_multiple_of(BLOCK) {
-            let fresh = Sums::new(self.pixels(), self.channels());
-            let sums = std::mem::replace(&mut self.open, fresh);
+            let (pixels, channels) = (self.pixels(), self.channels());
+            let sums = std::mem::replace(&mut self.open, Sums::new(0, 0));
             if let Some(spread) = &mut self.spread {
                 spread.add(&sums);
             }
             let index = self.samples.end / BLOCK - 1;
-            sums::push(&mut self.nodes, Node { level: 0, index, sums });
+            let free = sums::push(&mut self.nodes, Node { level: 0, index, sums });
+            self.open = free.map_or_else(|| Sums::new(pixels, channels), Sums::cleared);
         }
     }
 
@@ -128,7 +129,7 @@ impl TileFilm {
     pub fn append(&mut self, later: Self) {
         debug_assert_eq!(self.samples.end, later.samples.start);
         self.samples.end = later.samples.end;
-        later.nodes.into_iter().for_each(|node| sums::push(&mut self.nodes, node));
+        later.nodes.into_iter().for_each(|node| drop(sums::push(&mut self.nodes, node)));
         self.open = later.open;
         self.invalid += later.invalid;
         self.first_invalid = self.first_invalid.into_iter().chain(later.first_invalid).min();
