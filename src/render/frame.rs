@@ -148,14 +148,18 @@ impl Frame {
         let total = self.cells.iter().map(pixels).sum::<u64>() * range.len() as u64;
         let there = |cell: &Cell| pixels(cell) * lock(&cell.state).film.samples.len() as u64;
         let done = AtomicU64::new(self.cells.iter().map(there).sum());
+        // Each thread takes the next tile, and keeps its memory from tile to tile and from pass to pass.
+        let arenas: Vec<Mutex<Bump>> = (0..rayon::current_num_threads()).map(|_| Mutex::default()).collect();
         for end in passes(range.end - range.start) {
             let until = range.start + end;
             let next = AtomicUsize::new(0);
-            // Each thread takes the next tile, and keeps its memory from tile to tile.
-            rayon::broadcast(|_| {
-                let arena = Bump::new();
+            let take = || self.cells.get(next.fetch_add(1, Ordering::Relaxed));
+            rayon::broadcast(|thread| {
+                let Some(first) = take() else { return };
+                let mut arena = lock(&arenas[thread.index()]);
+                arena.reset();
                 let mut wavefront = Wavefront::new(&arena, scene, integrator, settings.sort);
-                while let Some(cell) = self.cells.get(next.fetch_add(1, Ordering::Relaxed)) {
+                for cell in std::iter::once(first).chain(std::iter::from_fn(take)) {
                     let visit = Visit { cell, frame: self, until, total, done: &done, watch };
                     match settings.backend {
                         Backend::Packet => wavefront.render(&cell.tile, &visit),
