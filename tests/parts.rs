@@ -391,3 +391,50 @@ fn kill_9_leaves_the_old_picture_or_the_new_one() {
         assert!(there == b"old" || there == new, "{} bytes are neither", there.len());
     }
 }
+
+#[test]
+fn a_cluster_is_handed_a_script_and_mistakes_are_told_before() {
+    let folder = folder("submit");
+    let out = path(&folder, "out.exr");
+    let submit = |scene: &str, shards: &str, more: &[&str]| -> Vec<String> {
+        let words = ["submit", "slurm", scene, "-o", &out, "--shards", shards];
+        [&words[..], more].concat().into_iter().map(String::from).collect()
+    };
+    let refused = |arguments: Vec<String>, code: i32, part: &str| {
+        fails(&arguments.iter().map(String::as_str).collect::<Vec<_>>(), code, part);
+        assert_eq!(names(&folder), [""; 0], "{arguments:?}");
+    };
+    refused(submit(SCENE, "0", &[]), 2, "0 is not in 1..");
+    refused(submit("no-such-scene.xml", "4", &[]), 1, "no-such-scene.xml");
+    refused(submit(SCENE, "4", &["--", "--no-such-option"]), 2, "--no-such-option");
+    refused(submit(SCENE, "4", &["--", "--shard", "1/2"]), 2, "--shard");
+    refused(submit(SCENE, "9", &["--shard-by", "samples", "--", "--spp", "40"]), 2, "there are 3 for 9");
+    refused(submit(SCENE, "4", &["--sbatch", "a\nb"]), 1, "can't hold");
+
+    let arguments = submit(SCENE, "2", &["--cpus", "2", "--", "--spp", "40", "--width", "70"]);
+    let nowhere = path(&folder, "no-path");
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let words = [&words[..7], &["--run"], &words[7..]].concat();
+    let output = command(&words).env("PATH", &nowhere).output().expect("the program starts");
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(stderr(&output).contains("there is no sbatch on the PATH"), "{}", stderr(&output));
+
+    // The script is there; in place of Slurm, something that does each task of an array and says a number.
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    succeeds(&words);
+    assert_eq!(names(&folder), ["out.2-tiles", "out.slurm.sh"]);
+    let bin = folder.join("bin");
+    fs::create_dir(&bin).expect("a folder can be made");
+    let sbatch = "#!/bin/sh\ncat >\"$0.job\"\ncase \"$*\" in\n*--array=0-1*) for i in 0 1; do\n\
+                  SLURM_ARRAY_TASK_ID=$i sh \"$0.job\" || exit 1; done; echo '7;cluster';;\n\
+                  *--dependency=afterok:7\\ *) sh \"$0.job\" >&2 || exit 1; echo 8;;\n*) exit 1;;\nesac\n";
+    fs::write(bin.join("sbatch"), sbatch).expect("writable");
+    let run = "chmod +x \"$0/sbatch\" && PATH=\"$0:$PATH\" exec sh \"$1\"";
+    let output = Command::new("sh").args(["-c", run]).arg(&bin).arg(folder.join("out.slurm.sh")).output();
+    let output = output.expect("there is a shell");
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert_eq!(String::from_utf8_lossy(&output.stdout), "job 7: 2 shards; job 8: the merge\n");
+    let whole = path(&folder, "whole.exr");
+    succeeds(&render(&whole, &[]));
+    same(&out, &whole);
+}

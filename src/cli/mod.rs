@@ -29,6 +29,7 @@ mod shell;
 mod signals;
 mod source;
 mod style;
+mod submit;
 mod threads;
 mod verify;
 mod way;
@@ -50,6 +51,7 @@ Examples:
   packlight render scenes/cornell.xml -o long.exr --spp 4096 --checkpoint long.part.exr
   packlight render scenes/cornell.xml -o part-3.exr --shard 3/16
   packlight merge part-*.exr -o whole.exr
+  packlight submit slurm scenes/cornell.xml -o out.exr --shards 16 --run
   packlight compare reference.exr test.exr -o difference.png
   packlight info scenes/cornell.xml --json
   packlight bench gen:terrain:1M --threads 1
@@ -80,6 +82,8 @@ enum Command {
     Render(Box<render::Arguments>),
     /// Put the parts of a render together
     Merge(merge::Arguments),
+    /// Render a scene in shards on the machines of a cluster
+    Submit(submit::Arguments),
     /// Say how two pictures differ
     Compare(compare::Arguments),
     /// Show what is in a scene, and the lanes that trace it
@@ -107,6 +111,7 @@ pub fn run() -> ExitCode {
     let done = Cli::try_parse().map_err(failure::Failure::from).and_then(|cli| match cli.command {
         Command::Render(arguments) => render::run(&arguments),
         Command::Merge(arguments) => merge::run(&arguments),
+        Command::Submit(arguments) => submit::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),

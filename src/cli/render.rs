@@ -196,8 +196,15 @@ fn numbers(arguments: &Arguments, pixel: [u32; 2]) -> Result<Replay, Failure> {
     Ok(Replay::new(&scene, name, &arguments.settings(), pixel, arguments.sample))
 }
 
-/// Load, compile, render, save.
-fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage), Failure> {
+/// What can be known of a render before anything is compiled: whether the scene loads, and whether the
+/// options fit it and each other.
+pub(super) fn check(arguments: &Arguments) -> Result<(), Failure> {
+    arguments.output.as_ref().map_or(Ok(()), |output| planned(arguments, output).map(drop))
+}
+
+/// The scene with everything that the command line says of it, the time it took to load, and what is to be
+/// rendered.
+fn planned(arguments: &Arguments, output: &Output) -> Result<(SceneDescription, Duration, Plan), Failure> {
     let (mut description, load_time) = arguments.source.load()?;
     arguments.overrides().apply(&mut description);
     description.aovs = arguments.aov.iter().map(|layer| layer.channel()).collect();
@@ -206,7 +213,12 @@ fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage),
         warn_of(format!("{option} only changes a .png; the numbers of this file stay linear"));
     }
     let plan = arguments.plan(&description, output.format)?;
+    Ok((description, load_time, plan))
+}
 
+/// Load, compile, render, save.
+fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage), Failure> {
+    let (description, load_time, plan) = planned(arguments, output)?;
     let scene = compile_with(&description, arguments.quality.quality())?;
     warn_of_doubts(&description, scene.summary().degenerate);
     let settings = arguments.settings();
