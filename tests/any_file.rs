@@ -3,6 +3,8 @@
 
 #![allow(missing_docs)]
 
+mod program;
+
 use std::{
     fs,
     panic::catch_unwind,
@@ -16,6 +18,7 @@ use packlight::load::{LoadOptions, load};
 use packlight::picture::{Encoding, decode};
 use packlight::scene::MerlTable;
 use packlight::verify::aim::Random;
+use program::folder;
 
 /// Longest that a file of these sizes may take.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -27,14 +30,6 @@ fn damages() -> usize {
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
-/// An empty folder for a test.
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("any_file").join(name);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("writable");
-    folder
 }
 
 /// Reads a file as what its name says. `Ok` is whether it could be used.
@@ -119,7 +114,7 @@ fn damaged(good: &[u8], random: &mut Random) -> Vec<u8> {
 
 /// Damages files in many ways, where the files that they name are.
 fn damage(name: &str, goods: &[PathBuf]) {
-    let folder = folder(name);
+    let folder = folder(&format!("any_file/{name}"));
     for beside in ["meshes", "textures"] {
         fs::create_dir_all(folder.join(beside)).expect("writable");
         for path in files_below(&root().join("scenes").join(beside)) {
@@ -177,7 +172,7 @@ fn damaged_obj() {
 #[test]
 fn damaged_ply() {
     let mut goods = of_others(&["malformed/cube_binary.ply", "awkward/degtri_sliding.ply"]);
-    let ascii = folder("seed").join("ascii.ply");
+    let ascii = folder("any_file/seed").join("ascii.ply");
     let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
                   element face 2\nproperty list uchar int vertex_indices\nend_header\n";
     fs::write(&ascii, format!("{header}0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n4 0 1 2 3\n")).expect("writable");
@@ -196,7 +191,7 @@ fn damaged_pictures() {
 
 #[test]
 fn damaged_rays_and_tables() {
-    let folder = folder("rays_seed");
+    let folder = folder("any_file/rays_seed");
     let (rays, table) = (folder.join("a.rays"), folder.join("a.binary"));
     let ray = packlight::geometry::Ray32::new(glam::Vec3::ONE, glam::Vec3::Z, 0.0, 9.0);
     fs::write(&rays, packlight::geometry::ray_file::encode(&[ray; 20])).expect("writable");
@@ -211,7 +206,7 @@ fn damaged_rays_and_tables() {
 #[test]
 fn what_is_only_announced_takes_no_memory() {
     use std::process::Command;
-    let folder = folder("announced");
+    let folder = folder("any_file/announced");
     let write = |name: &str, bytes: &[u8]| fs::write(folder.join(name), bytes).expect("writable");
     let ply = |format: &str, vertices: &str, list: &str, rest: &[u8]| {
         let header = format!(

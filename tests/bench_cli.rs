@@ -2,23 +2,18 @@
 
 #![allow(missing_docs)]
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    process::{Command, Output, Stdio},
-};
+mod program;
+
+use std::{fs, path::Path, process::Output};
+
+use program::{fails, folder, packlight, stderr};
 
 fn bench(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_packlight"))
-        .arg("bench")
-        .args(arguments)
-        .stdin(Stdio::null())
-        .output()
-        .expect("the program starts")
+    packlight(&[&["bench"], arguments].concat())
 }
 
-fn stderr(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
+fn refused(arguments: &[&str], code: i32, part: &str) {
+    fails(&[&["bench"], arguments].concat(), code, part);
 }
 
 /// The JSON lines of a run that succeeds.
@@ -27,23 +22,6 @@ fn lines(arguments: &[&str]) -> Vec<serde_json::Value> {
     assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
     let text = String::from_utf8(output.stdout).expect("UTF-8");
     text.lines().map(|line| serde_json::from_str(line).expect("a JSON object a line")).collect()
-}
-
-fn refused(arguments: &[&str], code: i32, part: &str) {
-    let output = bench(arguments);
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {}", stderr(&output));
-    assert!(stderr(&output).contains(part), "{arguments:?}: {part} is not in\n{}", stderr(&output));
-    assert!(output.stdout.is_empty(), "{arguments:?}");
-}
-
-/// An empty folder of its own for a test.
-fn folder(test: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("bench-{test}"));
-    if folder.exists() {
-        fs::remove_dir_all(&folder).expect("an old folder can be removed");
-    }
-    fs::create_dir_all(&folder).expect("a folder can be made");
-    folder
 }
 
 fn write(folder: &Path, name: &str, contents: impl AsRef<[u8]>) -> String {
@@ -63,7 +41,7 @@ const SHORT: [f32; 8] = [0.25, 0.25, 2.0, 0.0, 0.0, 0.0, -1.0, 1.5];
 
 #[test]
 fn the_protocol_is_one_line_with_the_agreed_keys() {
-    let folder = folder("protocol");
+    let folder = folder("bench-protocol");
     let mesh = write(&folder, "a.obj", TRIANGLE);
     let file = write(&folder, "a.rays", rays(&[HIT, MISS, SHORT, HIT, HIT]));
     for (query, t_sum) in [("closest", 6.0), ("any", 0.0)] {
@@ -83,7 +61,7 @@ fn the_protocol_is_one_line_with_the_agreed_keys() {
 
 #[test]
 fn threads_and_chunks_do_not_change_the_answer() {
-    let folder = folder("threads");
+    let folder = folder("bench-threads");
     let shoot = |i: usize| {
         let (x, y) = ((i % 100) as f32 / 100.0, (i / 100) as f32 / 100.0);
         [x, y, -1.0, 0.0, 0.05 - x * 0.1, 0.0, 1.0, f32::INFINITY]
@@ -110,7 +88,7 @@ fn threads_and_chunks_do_not_change_the_answer() {
 
 #[test]
 fn quality_changes_the_tree_and_no_hit() {
-    let folder = folder("quality");
+    let folder = folder("bench-quality");
     let shoot = |i: usize| {
         let (x, y) = ((i % 50) as f32 / 50.0, (i / 50) as f32 / 50.0);
         [x, y, -1.0, 0.0, 0.1 - x * 0.2, 0.0, 1.0, f32::INFINITY]
@@ -134,7 +112,7 @@ fn quality_changes_the_tree_and_no_hit() {
 
 #[test]
 fn rays_that_cannot_be_traced_are_counted_misses() {
-    let folder = folder("invalid");
+    let folder = folder("bench-invalid");
     let mesh = write(&folder, "a.obj", TRIANGLE);
     let nan = f32::NAN;
     let bad = [
@@ -155,7 +133,7 @@ fn rays_that_cannot_be_traced_are_counted_misses() {
 
 #[test]
 fn no_ray_makes_it_stumble() {
-    let folder = folder("extreme");
+    let folder = folder("bench-extreme");
     let mesh = write(&folder, "a.obj", TRIANGLE);
     // Every kind of number in every place, in turn: whole tiles of them, and a rest.
     let numbers = [
@@ -198,7 +176,7 @@ fn no_ray_makes_it_stumble() {
 
 #[test]
 fn bad_input_is_told_and_never_a_panic() {
-    let folder = folder("bad");
+    let folder = folder("bench-bad");
     let mesh = write(&folder, "a.obj", TRIANGLE);
     let good = write(&folder, "good.rays", rays(&[HIT]));
     let cut = write(&folder, "cut.rays", &rays(&[HIT])[..31]);
@@ -239,7 +217,7 @@ fn bad_input_is_told_and_never_a_panic() {
 
 #[test]
 fn a_scene_brings_its_own_rays_and_saves_them() {
-    let folder = folder("scene");
+    let folder = folder("bench-scene");
     let mesh = write(&folder, "a.obj", TRIANGLE);
     let rays = folder.join("rays").display().to_string();
     let own = lines(&[&mesh, "--save-rays", &rays, "--repeat", "1", "--json"]);

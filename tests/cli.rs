@@ -2,49 +2,11 @@
 
 #![allow(missing_docs)]
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    process::{Command, Output, Stdio},
-};
+mod program;
 
-fn packlight(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_packlight"))
-        .args(arguments)
-        .stdin(Stdio::null())
-        .output()
-        .expect("the program starts")
-}
+use std::{fs, path::Path};
 
-fn stdout(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stdout).into_owned()
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-/// Exit code, and a part of the message on stderr; stdout stays empty.
-fn fails(arguments: &[&str], code: i32, part: &str) {
-    let output = packlight(arguments);
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {}", stderr(&output));
-    assert!(stderr(&output).contains(part), "{arguments:?}: {part} is not in\n{}", stderr(&output));
-    assert!(output.stdout.is_empty(), "{arguments:?}: {}", stdout(&output));
-}
-
-/// An empty folder of its own for a test.
-fn folder(test: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
-    if folder.exists() {
-        fs::remove_dir_all(&folder).expect("an old folder can be removed");
-    }
-    fs::create_dir_all(&folder).expect("a folder can be made");
-    folder
-}
-
-fn path(folder: &Path, name: &str) -> String {
-    folder.join(name).display().to_string()
-}
+use program::{command, fails, folder, packlight, path, stderr, stdout};
 
 #[test]
 fn help_is_on_stdout_with_examples_and_exit_codes() {
@@ -195,12 +157,7 @@ fn a_closed_pipe_is_not_a_panic() {
     let folder = folder("closed-pipe");
     let scene = triangle(&folder);
     for arguments in [vec!["info", &scene], vec!["--help"]] {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_packlight"))
-            .args(&arguments)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("the program starts");
+        let mut child = command(&arguments).spawn().expect("the program starts");
         drop(child.stdout.take());
         let output = child.wait_with_output().expect("the program ends");
         assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));

@@ -2,16 +2,15 @@
 
 #![allow(missing_docs)]
 
-use std::{
-    fs,
-    path::Path,
-    process::{Command, Output},
-};
+mod program;
+
+use std::fs;
 
 use packlight::{
     compare::{flip_hdr, flip_ldr},
     picture::{Channel, Picture, Preview, save},
 };
+use program::{folder, packlight, path};
 
 const WIDTH: u32 = 64;
 const HEIGHT: u32 = 48;
@@ -59,16 +58,10 @@ fn flip_is_that_of_its_authors() {
     agrees(&flip_hdr(&pattern(false, light), &pattern(true, light)).expect("equal sizes"), HDR);
 }
 
-fn packlight(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_packlight")).args(arguments).output().expect("the program starts")
-}
-
 #[test]
 fn the_command_tells_draws_and_judges() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("compare");
-    fs::create_dir_all(&folder).expect("a folder can be made");
-    let path = |name: &str| folder.join(name).display().to_string();
-    let (reference, test, drawn) = (path("reference.exr"), path("test.exr"), path("drawn.png"));
+    let folder = folder("compare");
+    let [reference, test, drawn] = ["reference.exr", "test.exr", "drawn.png"].map(|name| path(&folder, name));
     save(&pattern(false, light), reference.as_ref(), Preview::default()).expect("writable");
     save(&pattern(true, light), test.as_ref(), Preview::default()).expect("writable");
 

@@ -3,32 +3,22 @@
 
 #![allow(missing_docs)]
 
+mod program;
+
 use std::{
     fs,
-    path::{Path, PathBuf},
-    process::{Child, Command, Output, Stdio},
+    path::Path,
+    process::{Child, Command},
     thread,
     time::{Duration, Instant},
 };
+
+use program::{command, folder, packlight, path, stderr};
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/cornell.xml");
 
 /// Not a multiple of a block, several tiles, some of them partly empty.
 const PICTURE: [&str; 6] = ["--width", "70", "--spp", "40", "--threads", "2"];
-
-fn command(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_packlight"));
-    command.args(arguments).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    command
-}
-
-fn packlight(arguments: &[&str]) -> Output {
-    command(arguments).output().expect("the program starts")
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
 
 fn succeeds(arguments: &[&str]) {
     let output = packlight(arguments);
@@ -46,20 +36,6 @@ fn fails(arguments: &[&str], code: i32, part: &str) {
 
 fn render<'a>(out: &'a str, more: &[&'a str]) -> Vec<&'a str> {
     [&["render", SCENE, "-o", out, "--quiet"], &PICTURE[..], more].concat()
-}
-
-/// An empty folder of its own for a test.
-fn folder(test: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("parts").join(test);
-    if folder.exists() {
-        fs::remove_dir_all(&folder).expect("an old folder can be removed");
-    }
-    fs::create_dir_all(&folder).expect("a folder can be made");
-    folder
-}
-
-fn path(folder: &Path, name: &str) -> String {
-    folder.join(name).display().to_string()
 }
 
 fn bytes(path: &str) -> Vec<u8> {
@@ -93,7 +69,7 @@ fn wait_for(file: &str, child: &mut Child) {
 
 #[test]
 fn shards_merge_to_the_bytes_of_one_machine() {
-    let folder = folder("shards");
+    let folder = folder("parts/shards");
     let whole = path(&folder, "whole.exr");
     let layers = ["--aov", "albedo,depth"];
     succeeds(&render(&whole, &layers));
@@ -114,7 +90,7 @@ fn shards_merge_to_the_bytes_of_one_machine() {
 
 #[test]
 fn shards_that_do_not_fit_are_named() {
-    let folder = folder("unfit");
+    let folder = folder("parts/unfit");
     let file = |name: &str| path(&folder, name);
     let (one, two, twin, other) = (file("1.exr"), file("2.exr"), file("twin.exr"), file("other.exr"));
     let picture = ["--width", "33", "--spp", "1"];
@@ -145,7 +121,7 @@ fn shards_that_do_not_fit_are_named() {
 
 #[test]
 fn shards_are_numbered_by_the_environment() {
-    let folder = folder("environment");
+    let folder = folder("parts/environment");
     let (typed, asked) = (path(&folder, "typed.exr"), path(&folder, "asked.exr"));
     let picture = ["--width", "33", "--spp", "1", "--quiet"];
     succeeds(&[&["render", SCENE, "-o", &typed, "--shard", "2/2"], &picture[..]].concat());
@@ -169,7 +145,7 @@ fn shards_are_numbered_by_the_environment() {
 
 #[test]
 fn a_killed_render_is_resumed_to_the_bit() {
-    let folder = folder("killed");
+    let folder = folder("parts/killed");
     let (whole, out, kept) =
         (path(&folder, "whole.exr"), path(&folder, "out.exr"), path(&folder, "kept.exr"));
     succeeds(&render(&whole, &[]));
@@ -198,7 +174,7 @@ fn a_killed_render_is_resumed_to_the_bit() {
 
 #[test]
 fn a_checkpoint_of_another_render_is_refused_with_the_difference() {
-    let folder = folder("other-render");
+    let folder = folder("parts/other-render");
     let (out, kept) = (path(&folder, "out.exr"), path(&folder, "kept.exr"));
     succeeds(&render(&out, &["--checkpoint", &kept]));
     let resumed = |more: &[&str], message: &str| {
@@ -224,7 +200,7 @@ fn a_checkpoint_of_another_render_is_refused_with_the_difference() {
 
 #[test]
 fn a_finished_render_goes_on_to_more_samples() {
-    let folder = folder("more");
+    let folder = folder("parts/more");
     let file = |name: &str| path(&folder, name);
     let (kept, out, whole) = (file("kept.exr"), file("out.exr"), file("whole.exr"));
     let render = |out: &str, more: &[&str]| {
@@ -243,7 +219,7 @@ const ENDLESS: [&str; 4] = ["--spp", "1000000", "--threads", "2"];
 #[test]
 fn a_signal_writes_what_is_there_and_says_how_much() {
     for (name, signal) in [("int", "-INT"), ("term", "-TERM")] {
-        let folder = folder(&format!("signal-{name}"));
+        let folder = folder(&format!("parts/signal-{name}"));
         let file = |name: &str| path(&folder, name);
         let (out, kept, png) = (file("out.exr"), file("kept.exr"), file("out.png"));
         for (target, keeps) in [(&out, vec!["--checkpoint", &kept, "--every", "10ms"]), (&png, vec![])] {
@@ -278,7 +254,7 @@ fn a_signal_writes_what_is_there_and_says_how_much() {
 
 #[test]
 fn a_time_limit_is_kept_and_what_is_there_goes_on() {
-    let folder = folder("time-limit");
+    let folder = folder("parts/time-limit");
     let out = path(&folder, "out.exr");
     let start = Instant::now();
     let arguments = ["render", SCENE, "-o", &out, "--width", "40", "--time-limit", "500ms", "--json"];
@@ -293,7 +269,7 @@ fn a_time_limit_is_kept_and_what_is_there_goes_on() {
 
 #[test]
 fn a_target_error_stops_by_tiles_the_same_on_any_thread() {
-    let folder = folder("target-error");
+    let folder = folder("parts/target-error");
     let file = |name: &str| path(&folder, name);
     let picture = ["--width", "70", "--spp", "512", "--target-error", "0.05", "--quiet"];
     let outs = ["1", "3"].map(|threads| {
@@ -319,7 +295,7 @@ fn a_target_error_stops_by_tiles_the_same_on_any_thread() {
 
 #[test]
 fn a_folder_that_goes_away_costs_no_samples() {
-    let folder = folder("gone");
+    let folder = folder("parts/gone");
     let gone = folder.join("gone");
     fs::create_dir(&gone).expect("a folder can be made");
     let (out, kept) = (path(&gone, "out.exr"), path(&folder, "kept.exr"));
@@ -341,7 +317,7 @@ fn a_folder_that_goes_away_costs_no_samples() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_costs_no_samples_and_no_old_picture() {
-    let folder = folder("full");
+    let folder = folder("parts/full");
     let (mount, here) = (folder.join("disk"), folder.join("here"));
     fs::create_dir(&mount).expect("a folder can be made");
     fs::create_dir(&here).expect("a folder can be made");
@@ -373,7 +349,7 @@ fn a_full_disk_costs_no_samples_and_no_old_picture() {
 
 #[test]
 fn kill_9_leaves_the_old_picture_or_the_new_one() {
-    let folder = folder("kill");
+    let folder = folder("parts/kill");
     let (whole, out) = (path(&folder, "whole.exr"), path(&folder, "out.exr"));
     succeeds(&render(&whole, &[]));
     let time = Instant::now();
@@ -394,7 +370,7 @@ fn kill_9_leaves_the_old_picture_or_the_new_one() {
 
 #[test]
 fn a_cluster_is_handed_a_script_and_mistakes_are_told_before() {
-    let folder = folder("submit");
+    let folder = folder("parts/submit");
     let out = path(&folder, "out.exr");
     let submit = |scene: &str, shards: &str, more: &[&str]| -> Vec<String> {
         let words = ["submit", "slurm", scene, "-o", &out, "--shards", shards];

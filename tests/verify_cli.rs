@@ -2,21 +2,12 @@
 
 #![allow(missing_docs)]
 
-use std::{
-    fs,
-    path::Path,
-    process::{Command, Output},
-};
+mod program;
+
+use std::{fs, path::Path};
 
 use packlight::geometry::{Ray32, ray_file::encode};
-
-fn packlight(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_packlight"))
-        .args(arguments)
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .output()
-        .expect("the program starts")
-}
+use program::{packlight, stderr};
 
 fn json(arguments: &[&str]) -> serde_json::Value {
     let output = packlight(arguments);
@@ -52,6 +43,6 @@ fn rays_of_a_file_are_held_to_what_they_should_find() {
     assert_eq!(json(&["verify", mesh, "--rays", rays, "--expect", "hit", "--json"])["unexpected"], 0);
     let output = packlight(&["verify", mesh, "--rays", rays, "--expect", "miss"]);
     assert_eq!(output.status.code(), Some(1));
-    let told = String::from_utf8_lossy(&output.stderr);
+    let told = stderr(&output);
     assert!(told.contains("1 ray that does not find what it should"), "{told}");
 }

@@ -102,7 +102,8 @@ impl Child {
         } else if self.0 & Self::LEAF == 0 {
             Kind::Inner(self.0)
         } else {
-            Kind::Leaf { first: self.slot(), count: (self.0 >> 28 & 7) + 1 }
+            let (first, count) = self.slots();
+            Kind::Leaf { first, count }
         }
     }
 }

@@ -14,7 +14,7 @@ use super::{
     quality::QualityOption,
     ray_file,
     source::{Source, definition},
-    threads,
+    threads::ThreadsOption,
     way::WayName,
 };
 use crate::{
@@ -60,9 +60,8 @@ pub(super) struct Arguments {
     #[arg(long, requires = "scene", conflicts_with_all = ["rays", "save_rays", "mesh", "way"])]
     whitted: bool,
 
-    /// Threads; one a core if not given
-    #[arg(long, value_name = "N", value_parser = threads::count())]
-    threads: Option<usize>,
+    #[command(flatten)]
+    threads: ThreadsOption,
 
     /// Timed runs after a warm-up; the best counts
     #[arg(long, value_name = "K", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=10_000))]
@@ -82,7 +81,7 @@ pub(super) struct Arguments {
 
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let pool = threads::pool(arguments.threads)?;
+    let pool = arguments.threads.pool()?;
     if arguments.whitted {
         return pool.install(|| whitted::run(arguments));
     }

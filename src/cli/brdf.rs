@@ -13,7 +13,7 @@ use super::{
     failure::{Failure, warn},
     output::check_writable,
     source::definition,
-    threads,
+    threads::ThreadsOption,
 };
 use crate::{
     load::{LoadOptions, load_material, read_material},
@@ -85,9 +85,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "N", help_heading = WHAT, default_value = "64", value_parser = value_parser!(u32).range(1..))]
     spp: u32,
 
-    /// Threads; one a core if not given
-    #[arg(long, value_name = "N", value_parser = threads::count())]
-    threads: Option<usize>,
+    #[command(flatten)]
+    threads: ThreadsOption,
 }
 
 #[derive(Clone, Debug, Subcommand)]
@@ -111,7 +110,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         check_writable(path)?;
     }
     let swatch = Swatch::new(arguments.load()?)?;
-    threads::pool(arguments.threads)?.install(|| arguments.make(&swatch))
+    arguments.threads.pool()?.install(|| arguments.make(&swatch))
 }
 
 impl Arguments {

@@ -13,7 +13,7 @@ use super::{
     quality::QualityOption,
     quantity::grouped,
     source::Source,
-    threads,
+    threads::ThreadsOption,
 };
 use crate::{
     compile::compile_with,
@@ -42,9 +42,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "N")]
     seed: Option<u32>,
 
-    /// Threads; one a core if not given
-    #[arg(long, value_name = "N", value_parser = threads::count())]
-    threads: Option<usize>,
+    #[command(flatten)]
+    threads: ThreadsOption,
 
     #[command(flatten)]
     quality: QualityOption,
@@ -56,7 +55,7 @@ pub(super) struct Arguments {
 
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let reading = threads::pool(arguments.threads)?.install(|| measure(arguments))?;
+    let reading = arguments.threads.pool()?.install(|| measure(arguments))?;
     if reading.invalid_samples > 0 {
         let count = grouped(reading.invalid_samples);
         warn_of(format!("{count} samples were not finite numbers and were left out"));

@@ -26,7 +26,7 @@ use super::{
     signals,
     source::Source,
     style::StyleOptions,
-    threads,
+    threads::ThreadsOption,
 };
 use crate::{
     compile::compile_with,
@@ -110,9 +110,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "N", requires = "pixel")]
     sample: Option<u32>,
 
-    /// Threads; one a core if not given
-    #[arg(long, value_name = "N", help_heading = MACHINE, value_parser = threads::count())]
-    threads: Option<usize>,
+    #[command(flatten, next_help_heading = MACHINE)]
+    threads: ThreadsOption,
 
     /// Eight rays at a time, or one at a time as a reference
     #[arg(long, value_name = "NAME", help_heading = MACHINE, default_value = "packet")]
@@ -146,7 +145,7 @@ enum Backend {
 
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let pool = threads::pool(arguments.threads)?;
+    let pool = arguments.threads.pool()?;
     if let Some(pixel) = arguments.pixel {
         let replay = pool.install(|| numbers(arguments, pixel))?;
         return if arguments.json {

@@ -1,17 +1,22 @@
 //! The threads that a command runs on.
 
-use clap::builder::RangedU64ValueParser;
+use clap::{Args, builder::RangedU64ValueParser};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::failure::Failure;
 
-/// For clap: a number of threads.
-pub(super) fn count() -> RangedU64ValueParser<usize> {
-    RangedU64ValueParser::new().range(1..=1024)
+/// The option, for every command that has much to do.
+#[derive(Clone, Copy, Debug, Args)]
+pub(super) struct ThreadsOption {
+    /// Threads; one a core if not given
+    #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
+    threads: Option<usize>,
 }
 
-/// As many threads as asked for, or one a core.
-pub(super) fn pool(threads: Option<usize>) -> Result<ThreadPool, Failure> {
-    let builder = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0));
-    builder.build().map_err(|error| Failure::Sentence(format!("can't start threads: {error}")))
+impl ThreadsOption {
+    /// As many threads as asked for, or one a core.
+    pub(super) fn pool(self) -> Result<ThreadPool, Failure> {
+        let builder = ThreadPoolBuilder::new().num_threads(self.threads.unwrap_or(0));
+        builder.build().map_err(|error| Failure::Sentence(format!("can't start threads: {error}")))
+    }
 }

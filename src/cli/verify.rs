@@ -7,7 +7,9 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::{console, failure::Failure, quality::QualityOption, ray_file, source::Source, threads};
+use super::{
+    console, failure::Failure, quality::QualityOption, ray_file, source::Source, threads::ThreadsOption,
+};
 use crate::{
     compile::{Scene, compile_with},
     geometry::Ray32,
@@ -46,9 +48,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR", default_value = ".")]
     into: PathBuf,
 
-    /// Threads; one a core if not given
-    #[arg(long, value_name = "N", value_parser = threads::count())]
-    threads: Option<usize>,
+    #[command(flatten)]
+    threads: ThreadsOption,
 
     #[command(flatten)]
     quality: QualityOption,
@@ -76,7 +77,7 @@ impl From<ExpectedName> for Expected {
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let file = arguments.rays.as_deref().map(ray_file::read).transpose()?;
-    let findings = threads::pool(arguments.threads)?.install(|| {
+    let findings = arguments.threads.pool()?.install(|| {
         let (description, _) = arguments.source.load()?;
         let scene = compile_with(&description, arguments.quality.quality())?;
         let (mut findings, exhibit) = match &file {

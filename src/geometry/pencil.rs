@@ -35,12 +35,11 @@ impl Pencils {
     #[inline]
     pub fn new(org: Vec3, low: Vec3x8, high: Vec3x8) -> Self {
         let half = f32x8::splat(0.5);
-        let greatest = low.abs().max(high.abs());
         Self {
             org,
             middle: (low + high).scale(half),
             radius: (high - low).scale(half),
-            length: greatest.x + greatest.y + greatest.z,
+            length: low.abs().max(high.abs()).element_sum(),
         }
     }
 
@@ -81,10 +80,7 @@ impl Aspect<f32x8> {
     /// The planes through the edges and the origin.
     #[inline]
     pub fn edge_planes(&self) -> EdgePlanes {
-        let size = |v: Vec3x8| {
-            let v = v.abs();
-            v.x + v.y + v.z
-        };
+        let size = |v: Vec3x8| v.abs().element_sum();
         let (e1, e2) = (self.e1, self.e2);
         let (u, v) = (e2.cross(self.s), self.q);
         let w = e2.cross(e1) - u - v;

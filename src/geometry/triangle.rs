@@ -65,7 +65,7 @@ impl Triangle {
     /// needs.
     #[inline]
     pub fn edges(&self) -> f32 {
-        size(self.e1()) + size(self.e2())
+        self.e1().abs().element_sum() + self.e2().abs().element_sum()
     }
 
     /// The box that decides hits.
@@ -105,12 +105,6 @@ impl Triangle {
         let t = Real::min(high, Real::max(low, t));
         (low <= high && ray.t_near < t && t <= ray.t_far).then_some((t, u, v))
     }
-}
-
-/// |x| + |y| + |z|.
-fn size(v: Vec3) -> f32 {
-    let v = v.abs();
-    v.x + v.y + v.z
 }
 
 /// A bound on the margin of any triangle whose coordinates are at most `reach` in magnitude, for each unit of

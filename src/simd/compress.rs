@@ -117,11 +117,10 @@ mod avx512 {
 
     #[inline]
     pub(super) fn compress(values: u32x8, bits: u8) -> u32x8 {
-        let (values, mut out) = (values.to_array(), [0; 8]);
-        // SAFETY: the feature is compiled in, and arrays of eight integers are what is read and written.
+        let mut out = [0; 8];
+        // SAFETY: the feature is compiled in, and an array of eight integers is what is written.
         unsafe {
-            let lanes = _mm256_loadu_si256(values.as_ptr().cast::<__m256i>());
-            let lanes = _mm256_maskz_compress_epi32(bits, lanes);
+            let lanes = _mm256_maskz_compress_epi32(bits, integers(values));
             _mm256_storeu_si256(out.as_mut_ptr().cast::<__m256i>(), lanes);
         }
         u32x8::new(out)

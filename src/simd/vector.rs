@@ -133,6 +133,12 @@ impl<R: Real> Vector3<R> {
         self.map(R::abs)
     }
 
+    /// x + y + z.
+    #[inline]
+    pub fn element_sum(self) -> R {
+        self.x + self.y + self.z
+    }
+
     /// The greatest component.
     #[inline]
     pub fn max_element(self) -> R {

@@ -78,13 +78,13 @@ impl Ready {
 
     /// The rays of a packet that starts at a place in its stream.
     fn packet(rays: &Rayx8, first: usize, reach: glam::Vec3, ready: &mut [Self; LANES]) {
-        let RayLanes { org, dir, rdir, t_near, t_far, margin: doubt } = rays;
+        let RayLanes { org, dir, rdir, t_near, t_far, margin } = rays;
         let inv = rdir.map(|r| r.max(f32x8::splat(-STEEPEST)).min(f32x8::splat(STEEPEST)));
         let reach = Vec3x8::splat(reach);
-        let margin = |inv: f32x8, org: f32x8, reach: f32x8| f32x8::splat(MARGIN) * inv * (org.abs() + reach);
+        let room = |inv: f32x8, org: f32x8, reach: f32x8| f32x8::splat(MARGIN) * inv * (org.abs() + reach);
         let axis = |inv: f32x8, org: f32x8, reach: f32x8| {
-            let (shift, margin) = (-(org * inv), margin(inv, org, reach));
-            (shift - margin, shift + margin)
+            let (shift, room) = (-(org * inv), room(inv, org, reach));
+            (shift - room, shift + room)
         };
         let (x, y, z) =
             (axis(inv.x, org.x, reach.x), axis(inv.y, org.y, reach.y), axis(inv.z, org.z, reach.z));
@@ -92,7 +92,7 @@ impl Ready {
         let rows = [
             transpose([inv.x, inv.y, inv.z, x.0, y.0, z.0, t_near.max(f32x8::zero()), *t_far]),
             transpose([x.1, y.1, z.1, org.x, org.y, org.z, *t_near, f32x8::from_bits(index)]),
-            transpose([dir.x, dir.y, dir.z, rdir.x, rdir.y, rdir.z, *doubt, *doubt]),
+            transpose([dir.x, dir.y, dir.z, rdir.x, rdir.y, rdir.z, *margin, f32x8::zero()]),
         ];
         for (i, ready) in ready.iter_mut().enumerate() {
             *ready = Self([rows[0][i].to_array(), rows[1][i].to_array(), rows[2][i].to_array()]);

@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use super::plot::Plot;
 use crate::{
-    cli::{failure::Failure, output::check_writable, threads},
+    cli::{failure::Failure, output::check_writable, threads::ThreadsOption},
     load::read_material,
     lobe::{Cell, Swatch, sheet},
     scene::{Material, MerlTable},
@@ -24,9 +24,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "N", default_value = "64", value_parser = value_parser!(u32).range(1..))]
     spp: u32,
 
-    /// Threads; one a core if not given
-    #[arg(long, value_name = "N", value_parser = threads::count())]
-    threads: Option<usize>,
+    #[command(flatten)]
+    threads: ThreadsOption,
 }
 
 /// What is under each sphere, and what is on it.
@@ -69,7 +68,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     check_writable(&arguments.output.path)?;
     let cells =
         MODELS.into_iter().map(|(caption, line)| cell(caption, line)).collect::<Result<Vec<_>, _>>()?;
-    let drawing = threads::pool(arguments.threads)?
+    let drawing = arguments
+        .threads
+        .pool()?
         .install(|| sheet("packlight's reflection models", &cells, arguments.spp))?;
     arguments.output.write(drawing)
 }
