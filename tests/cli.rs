@@ -153,6 +153,30 @@ fn channels_without_names_are_refused_for_aov() {
 }
 
 #[test]
+fn files_have_the_channels_that_the_film_asks_for() {
+    let folder = folder("pixel-format");
+    let (scene, out) = (path(&folder, "scene.xml"), path(&folder, "out.exr"));
+    for (format, expected) in
+        [("luminance", "Y depth.Z"), ("rgba", "A B G R depth.Z"), ("luminance_alpha", "A Y depth.Z")]
+    {
+        let text = format!(
+            "<scene version='3.0.0'><sensor type='perspective'><film type='hdrfilm'>\
+             <integer name='width' value='8'/><integer name='height' value='8'/>\
+             <string name='pixel_format' value='{format}'/></film></sensor></scene>"
+        );
+        fs::write(&scene, text).expect("a scene can be written");
+        let output = packlight(&["render", &scene, "-o", &out, "--spp", "2", "--aov", "depth"]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let written = exr::meta::MetaData::read_from_file(&out, false).expect("an EXR file");
+        let channels = &written.headers[0].channels.list;
+        let mut names: Vec<_> = channels.iter().map(|channel| channel.name.to_string()).collect();
+        names.sort();
+        assert_eq!(names.join(" "), expected);
+        fails(&["render", &scene, "-o", &out, "--shard", "1/2"], 2, "a pixel_format of rgb");
+    }
+}
+
+#[test]
 fn a_closed_pipe_is_not_a_panic() {
     let folder = folder("closed-pipe");
     let scene = triangle(&folder);

@@ -32,7 +32,7 @@ use crate::{
     compile::compile_with,
     picture::{Format, save_with},
     render::{self, Coverage, Frame, Plan, Settings, Watch},
-    scene::{Film, SceneDescription, Sensor},
+    scene::{Film, PixelFormat, SceneDescription, Sensor},
 };
 use keep::{KeepOptions, Name};
 use lesson::Lesson;
@@ -233,7 +233,11 @@ fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage),
     bar.finish();
 
     let coverage = frame.coverage();
-    let statistics = save(arguments, output, &frame, &name, coverage)?;
+    // A part keeps colours, to go on from; only a picture has the film's format.
+    let is_part = output.format == Format::Exr && (plan.shard != render::Shard::WHOLE || !coverage.complete);
+    let developed = frame.develop();
+    let developed = if is_part { developed } else { developed.formatted(&scene, &settings) };
+    save(arguments, output, &frame, &name, &developed, is_part)?;
     let report = Report::from(Sources {
         scene: arguments.source.path.display().to_string(),
         output: output.path.display().to_string(),
@@ -242,7 +246,7 @@ fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage),
         coverage,
         settings,
         summary: scene.summary(),
-        statistics,
+        statistics: developed.statistics,
         lesson: arguments.stats.then(|| Lesson::new(&scene)),
         load_time,
         threads: rayon::current_num_threads(),
@@ -257,26 +261,24 @@ fn save(
     output: &Output,
     frame: &Frame,
     name: &Name<'_>,
-    coverage: Coverage,
-) -> Result<render::Statistics, Failure> {
-    let render::Rendered { picture, statistics } = frame.develop();
+    render::Rendered { picture, statistics }: &render::Rendered,
+    is_part: bool,
+) -> Result<(), Failure> {
     let about = About {
         scene: name.scene,
         facts: name.facts,
         samples: frame.samples(),
-        statistics: &statistics,
-        coverage,
+        statistics,
+        coverage: frame.coverage(),
     };
     let style = arguments.style.style(&about);
-    let is_part = frame.plan().shard != render::Shard::WHOLE || !coverage.complete;
-    let saved = if is_part && output.format == Format::Exr {
+    let saved = if is_part {
         part_file::save(&name.part(frame), &output.path, &style)
     } else {
-        save_with(&picture, &output.path, &style).map_err(|error| error.to_string())
+        save_with(picture, &output.path, &style).map_err(|error| error.to_string())
     };
     let checkpoint = arguments.keep.checkpoint.as_deref();
-    saved.map_err(|error| rescue::rescue(frame, name, &output.path, checkpoint, &error))?;
-    Ok(statistics)
+    saved.map_err(|error| rescue::rescue(frame, name, &output.path, checkpoint, &error))
 }
 
 /// Named channels fit nowhere but into an EXR.
@@ -319,6 +321,11 @@ impl Arguments {
             return refuse("--target-error needs all samples of a tile at hand; use --shard-by tiles".into());
         }
         let Sensor { film, sampler, .. } = &description.sensor;
+        if film.format != PixelFormat::Rgb {
+            return refuse(
+                "shards are merged without the scene, and so only with a pixel_format of rgb".into(),
+            );
+        }
         match share::too_many(shard, sampler.sample_count, render::tile_count(film.window())) {
             Some(why) => refuse(why),
             None => Ok(Plan { shard, target_error }),

@@ -120,8 +120,7 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &(dyn Fn(Progress) +
             render_with(self.0, integrator, self.1, self.2)
         }
     }
-    let rendered = with_integrator(scene, Render(scene, settings, progress));
-    pixel_format::formatted(scene, settings, rendered)
+    with_integrator(scene, Render(scene, settings, progress)).formatted(scene, settings)
 }
 
 impl Frame {

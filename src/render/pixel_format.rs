@@ -8,21 +8,28 @@ use crate::scene::PixelFormat;
 /// Y of linear sRGB.
 const LUMINANCE: [f32; 3] = [0.212_671, 0.715_16, 0.072_169];
 
-/// A rendered picture in the film's format. One without `R G B` stays as it is.
-pub(super) fn formatted(scene: &Scene, settings: &Settings, mut rendered: Rendered) -> Rendered {
-    let Some(luminance) = luminance(&rendered.picture) else { return rendered };
-    let format = scene.film.format;
-    if matches!(format, PixelFormat::Luminance | PixelFormat::LuminanceAlpha) {
-        rendered.picture.channels = vec![Channel { name: "Y".into(), samples: luminance }];
+impl Rendered {
+    /// The same in the film's format. A picture without `R G B` stays as it is, and so do other channels.
+    ///
+    /// Alpha takes a render of camera rays, on the current rayon pool.
+    #[must_use]
+    pub fn formatted(mut self, scene: &Scene, settings: &Settings) -> Self {
+        let Some(luminance) = luminance(&self.picture) else { return self };
+        let channels = &mut self.picture.channels;
+        let format = scene.film.format;
+        if matches!(format, PixelFormat::Luminance | PixelFormat::LuminanceAlpha) {
+            channels.retain(|channel| !["R", "G", "B"].contains(&channel.name.as_str()));
+            channels.insert(0, Channel { name: "Y".into(), samples: luminance });
+        }
+        // What a meter sees from a surface has no holes to look through.
+        if matches!(format, PixelFormat::Rgba | PixelFormat::LuminanceAlpha) && !scene.has_meter() {
+            let alpha = render_with(scene, &Alpha::of(scene), settings, &|_| {});
+            channels.extend(alpha.picture.channels.into_iter().filter(|channel| channel.name == "A"));
+            self.statistics.camera_rays += alpha.statistics.camera_rays;
+            self.statistics.time += alpha.statistics.time;
+        }
+        self
     }
-    // What a meter sees from a surface has no holes to look through.
-    if matches!(format, PixelFormat::Rgba | PixelFormat::LuminanceAlpha) && !scene.has_meter() {
-        let alpha = render_with(scene, &Alpha::of(scene), settings, &|_| {});
-        rendered.picture.channels.extend(alpha.picture.channels);
-        rendered.statistics.camera_rays += alpha.statistics.camera_rays;
-        rendered.statistics.time += alpha.statistics.time;
-    }
-    rendered
 }
 
 fn luminance(picture: &Picture) -> Option<Vec<f32>> {
