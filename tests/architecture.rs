@@ -60,6 +60,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("strsim", &["load/"]),
     // In `load/` and `cli/` only in tests.
     ("tempfile", &["load/", "picture/", "cli/"]),
+    ("tev_client", &["cli/"]),
     ("thiserror", &[""]),
     ("tobj", &["load/obj.rs"]),
     ("wide", &["simd/"]),

@@ -1,8 +1,12 @@
 //! `packlight render SCENE -o OUT`.
 
 mod aovs;
+mod crop;
+mod display;
 mod keep;
 pub(super) mod lesson;
+mod meanwhile;
+mod plan;
 mod rescue;
 mod share;
 
@@ -31,11 +35,12 @@ use super::{
 use crate::{
     compile::compile_with,
     picture::{Format, save_with},
-    render::{self, Coverage, Frame, Plan, Settings, Watch},
-    scene::{Film, PixelFormat, SceneDescription, Sensor},
+    render::{self, Coverage, Frame, Settings, Watch},
+    scene::Film,
 };
 use keep::{KeepOptions, Name};
 use lesson::Lesson;
+use plan::planned;
 use share::ShardOptions;
 
 const PICTURE: &str = "Picture";
@@ -75,6 +80,13 @@ pub(super) struct Arguments {
     /// Rows; without --width the aspect ratio is kept
     #[arg(long, value_name = "H", help_heading = PICTURE, value_parser = side())]
     height: Option<u32>,
+
+    /// Only these columns and rows of the picture: from x0 up to, and without, x1
+    ///
+    /// In pixels of the whole picture, in place of the scene's own crop. Pixels are to the bit what they are in
+    /// the whole; but tiles begin at the crop, so by --target-error others of them may be done.
+    #[arg(long, value_name = "x0,x1,y0,y1", help_heading = PICTURE, conflicts_with = "pixel", value_parser = crop::parse)]
+    crop: Option<crop::Bounds>,
 
     /// Seed of every random decision
     #[arg(long, value_name = "N", help_heading = PICTURE)]
@@ -119,6 +131,10 @@ pub(super) struct Arguments {
 
     #[command(flatten, next_help_heading = MACHINE)]
     quality: QualityOption,
+
+    /// Show the picture while it is rendered: in tev, or whatever listens there as tev does
+    #[arg(long, value_name = "HOST:PORT", help_heading = MACHINE, conflicts_with = "pixel", value_parser = display::parse)]
+    display_server: Option<display::Server>,
 
     /// Shade hits as they come, not sorted by material: for measurement
     #[arg(long, help_heading = MACHINE)]
@@ -201,20 +217,6 @@ pub(super) fn check(arguments: &Arguments) -> Result<(), Failure> {
     arguments.output.as_ref().map_or(Ok(()), |output| planned(arguments, output).map(drop))
 }
 
-/// The scene with everything that the command line says of it, the time it took to load, and what is to be
-/// rendered.
-fn planned(arguments: &Arguments, output: &Output) -> Result<(SceneDescription, Duration, Plan), Failure> {
-    let (mut description, load_time) = arguments.source.load()?;
-    arguments.overrides().apply(&mut description);
-    description.aovs = arguments.aov.iter().map(|layer| layer.channel()).collect();
-    can_hold(output.format, &description)?;
-    if let Some(option) = arguments.style.only_for_png().filter(|_| output.format != Format::Png) {
-        warn_of(format!("{option} only changes a .png; the numbers of this file stay linear"));
-    }
-    let plan = arguments.plan(&description, output.format)?;
-    Ok((description, load_time, plan))
-}
-
 /// Load, compile, render, save.
 fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage), Failure> {
     let (description, load_time, plan) = planned(arguments, output)?;
@@ -229,7 +231,9 @@ fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage),
     let deadline = arguments.time_limit.map(|limit| Instant::now() + limit);
     let late = || deadline.is_some_and(|deadline| Instant::now() >= deadline);
     let watch = Watch { progress: &|progress| bar.show(progress), stop: &|| signals::wished() || late() };
-    arguments.keep.keeping(&frame, &name, || frame.render(&scene, &settings, &watch));
+    let render = || frame.render(&scene, &settings, &watch);
+    let server = arguments.display_server.as_ref();
+    arguments.keep.keeping(&frame, &name, || display::showing(server, &frame, &output.path, render));
     bar.finish();
 
     let coverage = frame.coverage();
@@ -281,16 +285,6 @@ fn save(
     saved.map_err(|error| rescue::rescue(frame, name, &output.path, checkpoint, &error))
 }
 
-/// Named channels fit nowhere but into an EXR.
-fn can_hold(format: Format, description: &SceneDescription) -> Result<(), Failure> {
-    let is_aov = IntegratorName::from(&description.integrator) == IntegratorName::Aov;
-    if format == Format::Exr || (!is_aov && description.aovs.is_empty()) {
-        return Ok(());
-    }
-    let message = "layers and the aov integrator write named channels, which only an .exr can hold";
-    Err(Cli::command().error(ErrorKind::ArgumentConflict, message).into())
-}
-
 impl Arguments {
     fn overrides(&self) -> Overrides {
         Overrides {
@@ -299,36 +293,6 @@ impl Arguments {
             width: self.width,
             height: self.height,
             seed: self.seed,
-        }
-    }
-
-    /// What is to be rendered of the scene.
-    fn plan(&self, description: &SceneDescription, format: Format) -> Result<Plan, Failure> {
-        let refuse = |message: String| Err(Cli::command().error(ErrorKind::ArgumentConflict, message).into());
-        let target_error = self.target_error;
-        if target_error.is_some() && IntegratorName::from(&description.integrator) == IntegratorName::Aov {
-            return refuse(
-                "--target-error is the error of light, which the aov integrator does not write".into(),
-            );
-        }
-        let Some(shard) = self.share.get()? else {
-            return Ok(Plan { target_error, ..Plan::default() });
-        };
-        if format != Format::Exr {
-            return refuse("the sums of a shard fit only into an .exr".into());
-        }
-        if target_error.is_some() && shard.by == render::ShardBy::Samples {
-            return refuse("--target-error needs all samples of a tile at hand; use --shard-by tiles".into());
-        }
-        let Sensor { film, sampler, .. } = &description.sensor;
-        if film.format != PixelFormat::Rgb {
-            return refuse(
-                "shards are merged without the scene, and so only with a pixel_format of rgb".into(),
-            );
-        }
-        match share::too_many(shard, sampler.sample_count, render::tile_count(film.window())) {
-            Some(why) => refuse(why),
-            None => Ok(Plan { shard, target_error }),
         }
     }
 
