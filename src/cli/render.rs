@@ -2,12 +2,14 @@
 
 mod aovs;
 mod crop;
+pub(super) mod denoised;
 mod display;
 mod keep;
 pub(super) mod lesson;
 mod meanwhile;
 mod plan;
 mod rescue;
+mod save;
 mod share;
 
 use std::time::{Duration, Instant};
@@ -18,11 +20,9 @@ use super::{
     Cli, console, duration,
     failure::{Failure, warn_of},
     info::warn_of_doubts,
-    memory,
-    metadata::{self, About},
-    output::Output,
+    memory, metadata,
+    output::{Output, check_writable},
     overrides::{IntegratorName, MAX_SIDE, Overrides},
-    part_file,
     progress::Bar,
     quality::QualityOption,
     replay::{self, Replay},
@@ -34,13 +34,14 @@ use super::{
 };
 use crate::{
     compile::compile_with,
-    picture::{Format, save_with},
-    render::{self, Coverage, Frame, Settings, Watch},
-    scene::Film,
+    picture::Format,
+    render::{self, Coverage, Settings, Watch},
+    scene::{AovChannel, Film},
 };
 use keep::{KeepOptions, Name};
 use lesson::Lesson;
 use plan::planned;
+use save::Ended;
 use share::ShardOptions;
 
 const PICTURE: &str = "Picture";
@@ -49,7 +50,9 @@ const MACHINE: &str = "Machine (never changes a bit of the picture)";
 const EXAMPLES: &str = "\
 Examples:
   packlight render scenes/cornell.xml -o cornell.exr --aov albedo,normal,depth
-  packlight render scenes/cornell.xml -o preview.png --time-limit 10s --tonemap agx
+  packlight render scenes/cornell.xml -o preview.png --time-limit 10s --tonemap agx --denoise
+  packlight render scenes/cornell.xml -o detail.exr --crop 200,312,96,180 --spp 1024
+  packlight render scenes/cornell.xml -o live.exr --display-server localhost:14158
   packlight render scenes/cornell.xml -o clean.exr --spp 4096 --target-error 0.01
   packlight render scenes/cornell.xml -o long.exr --checkpoint kept.exr --resume kept.exr
   packlight render scenes/cornell.xml -o part-3.exr --shard 3/16";
@@ -95,6 +98,13 @@ pub(super) struct Arguments {
     /// Layers of the .exr beside the picture: what the camera sees, averaged over the pixel
     #[arg(long, value_name = "NAME,…", help_heading = PICTURE, value_delimiter = ',')]
     aov: Vec<aovs::Layer>,
+
+    /// A second picture without noise, OUT.denoised.EXT, by Open Image Denoise; OUT stays as it is
+    ///
+    /// It looks at the layers albedo and normal; they are in the files only if --aov names them, and in a part to
+    /// be continued. The library is looked for where OIDN_LIB says, else where the system has libraries.
+    #[arg(long, help_heading = PICTURE, conflicts_with = "pixel")]
+    denoise: bool,
 
     /// A part of the picture is done when its relative error is estimated to be as small as this; --spp is
     /// the most it takes
@@ -172,6 +182,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let Some(output) = &arguments.output else { return Ok(()) };
     output.check()?;
+    if arguments.denoise {
+        check_writable(&denoised::beside(&output.path))?;
+    }
     arguments.keep.check()?;
     signals::listen();
     let (report, coverage) = pool.install(|| picture(arguments, output))?;
@@ -220,6 +233,7 @@ pub(super) fn check(arguments: &Arguments) -> Result<(), Failure> {
 /// Load, compile, render, save.
 fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage), Failure> {
     let (description, load_time, plan) = planned(arguments, output)?;
+    let denoiser = arguments.denoise.then(denoised::load).transpose()?;
     let scene = compile_with(&description, arguments.quality.quality())?;
     warn_of_doubts(&description, scene.summary().degenerate);
     let settings = arguments.settings();
@@ -237,11 +251,9 @@ fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage),
     bar.finish();
 
     let coverage = frame.coverage();
-    // A part keeps colours, to go on from; only a picture has the film's format.
-    let is_part = output.format == Format::Exr && (plan.shard != render::Shard::WHOLE || !coverage.complete);
-    let developed = frame.develop();
-    let developed = if is_part { developed } else { developed.formatted(&scene, &settings) };
-    save(arguments, output, &frame, &name, &developed, is_part)?;
+    let denoiser = denoiser.as_ref();
+    let ended = Ended { arguments, output, scene: &scene, frame: &frame, name: &name, denoiser };
+    let (statistics, denoised) = ended.save()?;
     let report = Report::from(Sources {
         scene: arguments.source.path.display().to_string(),
         output: output.path.display().to_string(),
@@ -250,39 +262,14 @@ fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage),
         coverage,
         settings,
         summary: scene.summary(),
-        statistics: developed.statistics,
+        statistics,
         lesson: arguments.stats.then(|| Lesson::new(&scene)),
+        denoised,
         load_time,
         threads: rayon::current_num_threads(),
         peak_memory: memory::peak(),
     });
     Ok((report, coverage))
-}
-
-/// The picture; and its sums, if it is a shard or not finished.
-fn save(
-    arguments: &Arguments,
-    output: &Output,
-    frame: &Frame,
-    name: &Name<'_>,
-    render::Rendered { picture, statistics }: &render::Rendered,
-    is_part: bool,
-) -> Result<(), Failure> {
-    let about = About {
-        scene: name.scene,
-        facts: name.facts,
-        samples: frame.samples(),
-        statistics,
-        coverage: frame.coverage(),
-    };
-    let style = arguments.style.style(&about);
-    let saved = if is_part {
-        part_file::save(&name.part(frame), &output.path, &style)
-    } else {
-        save_with(picture, &output.path, &style).map_err(|error| error.to_string())
-    };
-    let checkpoint = arguments.keep.checkpoint.as_deref();
-    saved.map_err(|error| rescue::rescue(frame, name, &output.path, checkpoint, &error))
 }
 
 impl Arguments {
@@ -294,6 +281,11 @@ impl Arguments {
             height: self.height,
             seed: self.seed,
         }
+    }
+
+    /// The layers that are asked for.
+    fn layers(&self) -> Vec<AovChannel> {
+        self.aov.iter().map(|layer| layer.channel()).collect()
     }
 
     fn settings(&self) -> Settings {
