@@ -27,6 +27,7 @@ pub mod texture;
 pub mod bvh;
 pub mod camera;
 pub mod compare;
+pub mod denoise;
 pub mod film;
 pub mod light;
 pub mod material;

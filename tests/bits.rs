@@ -105,9 +105,9 @@ fn difference(one: &Picture, other: &Picture) -> Option<String> {
     None
 }
 
-/// Each integrator with its usual parameters; the first is the scene's own.
-fn integrators(own: &Integrator) -> Vec<(&'static str, Integrator)> {
-    let kinds = [
+/// One of each kind.
+fn channels() -> Vec<AovChannel> {
+    [
         ("depth", Aov::Depth),
         ("position", Aov::Position),
         ("uv", Aov::Uv),
@@ -118,8 +118,13 @@ fn integrators(own: &Integrator) -> Vec<(&'static str, Integrator)> {
         ("primitive_id", Aov::PrimitiveId),
         ("nodes", Aov::Nodes),
         ("primitives", Aov::Primitives),
-    ];
-    let channels = kinds.map(|(name, kind)| AovChannel { name: name.into(), kind }).into();
+    ]
+    .map(|(name, kind)| AovChannel { name: name.into(), kind })
+    .into()
+}
+
+/// Each integrator with its usual parameters; the first is the scene's own.
+fn integrators(own: &Integrator) -> Vec<(&'static str, Integrator)> {
     let others = [
         ("whitted", Integrator::Whitted { max_depth: 7 }),
         ("direct", Integrator::Direct { hide_emitters: false }),
@@ -127,7 +132,7 @@ fn integrators(own: &Integrator) -> Vec<(&'static str, Integrator)> {
         ("path", Integrator::Path { max_depth: Some(9), rr_depth: 2, hide_emitters: true }),
         ("ao", Integrator::AmbientOcclusion { distance: 1.5 }),
         ("irradiance", Integrator::Irradiance { max_depth: Some(5), rr_depth: 2 }),
-        ("aov", Integrator::Aov { channels }),
+        ("aov", Integrator::Aov { channels: channels() }),
     ];
     [("own integrator", own.clone())].into_iter().chain(others).collect()
 }
@@ -190,6 +195,30 @@ fn every_way_to_render_gives_the_same_bits() {
                     panic!("scenes/{name}.xml, {integrator}, {way}: {difference}");
                 }
             }
+        }
+    }
+}
+
+#[test]
+fn layers_beside_the_picture_have_the_same_bits_every_way() {
+    for (name, path) in scenes() {
+        let plain = description(&path);
+        let mut scene = compile(&plain).expect("a scene of ours compiles");
+        let light = on_threads(1, &scene, &PACKET);
+        scene.integrator = Integrator::Aov { channels: channels() };
+        let seen = on_threads(1, &scene, &PACKET);
+        (scene.integrator, scene.aovs) = (plain.integrator.clone(), channels());
+        let packet = on_threads(1, &scene, &PACKET);
+        for (way, settings, threads) in WAYS {
+            let difference = difference(&on_threads(threads, &scene, &settings), &packet);
+            assert!(difference.is_none(), "{name}, {way}: {}", difference.unwrap_or_default());
+        }
+        // They are what the `aov` integrator sees, and light does not notice them.
+        let apart = light.channels.iter().chain(&seen.channels);
+        assert_eq!(light.channels.len() + seen.channels.len(), packet.channels.len());
+        for (one, other) in apart.zip(&packet.channels) {
+            let bits = |x: &[f32]| x.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+            assert!(bits(&one.samples) == bits(&other.samples), "{name}: {}", other.name);
         }
     }
 }

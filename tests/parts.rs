@@ -293,6 +293,53 @@ fn a_target_error_stops_by_tiles_the_same_on_any_thread() {
     assert!(samples.1.ends_with(" of 512") && samples.1.starts_with("64"), "{samples:?}");
 }
 
+/// Which tiles are done is decided by sums that a part keeps: wherever it was cut, the same tiles are.
+#[test]
+fn a_target_error_that_was_interrupted_is_resumed_to_the_bit() {
+    let folder = folder("parts/target-error-resumed");
+    let file = |name: &str| path(&folder, name);
+    let (whole, out, kept) = (file("whole.exr"), file("out.exr"), file("kept.exr"));
+    let adaptive = |out: &str, spp: &str, more: &[&str]| -> Vec<String> {
+        let words = ["render", SCENE, "-o", out, "--width", "70", "--spp", spp, "--quiet"];
+        let error = ["--target-error", "0.05", "--threads", "2"];
+        [&words[..], &error, more].concat().into_iter().map(String::from).collect()
+    };
+    let run = |arguments: &[String]| succeeds(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
+    run(&adaptive(&whole, "512", &[]));
+    // Tiles stop at different numbers of samples, and not all of them by the error.
+    let samples = |file: &str| {
+        let said = packlight::picture::exr_attributes(&bytes(file));
+        said.into_iter().find(|(name, _)| name == "packlight.samples").expect("it is said").1
+    };
+    assert!(samples(&whole).ends_with(" of 512") && samples(&whole).contains(" to "), "{}", samples(&whole));
+
+    // Killed, again and again, and at the end not any more.
+    let again = adaptive(&out, "512", &["--checkpoint", &kept, "--every", "1ms", "--resume", &kept]);
+    let again: Vec<&str> = again.iter().map(String::as_str).collect();
+    for kill in 0..6 {
+        let mut child = command(&again).spawn().expect("the program starts");
+        wait_for(&kept, &mut child);
+        thread::sleep(Duration::from_millis(5 + 60 * kill));
+        child.kill().expect("a child can be killed");
+        child.wait().expect("it ends");
+    }
+    succeeds(&again);
+    same(&out, &whole);
+
+    // Stopped by its limit, and resumed from the picture.
+    let stopped = file("stopped.exr");
+    run(&adaptive(&stopped, "512", &["--time-limit", "300ms"]));
+    run(&adaptive(&out, "512", &["--resume", &stopped]));
+    same(&out, &whole);
+
+    // Ended at fewer samples, in the middle of a block of sixteen or at its end, and gone on to more.
+    for fewer in ["40", "96"] {
+        run(&adaptive(&file("fewer.exr"), fewer, &["--checkpoint", &kept]));
+        run(&adaptive(&out, "512", &["--resume", &kept]));
+        same(&out, &whole);
+    }
+}
+
 #[test]
 fn a_folder_that_goes_away_costs_no_samples() {
     let folder = folder("parts/gone");

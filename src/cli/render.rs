@@ -1,9 +1,15 @@
 //! `packlight render SCENE -o OUT`.
 
 mod aovs;
+mod crop;
+pub(super) mod denoised;
+mod display;
 mod keep;
 pub(super) mod lesson;
+mod meanwhile;
+mod plan;
 mod rescue;
+mod save;
 mod share;
 
 use std::time::{Duration, Instant};
@@ -14,11 +20,9 @@ use super::{
     Cli, console, duration,
     failure::{Failure, warn_of},
     info::warn_of_doubts,
-    memory,
-    metadata::{self, About},
-    output::Output,
+    memory, metadata,
+    output::{Output, check_writable},
     overrides::{IntegratorName, MAX_SIDE, Overrides},
-    part_file,
     progress::Bar,
     quality::QualityOption,
     replay::{self, Replay},
@@ -30,12 +34,14 @@ use super::{
 };
 use crate::{
     compile::compile_with,
-    picture::{Format, save_with},
-    render::{self, Coverage, Frame, Plan, Settings, Watch},
-    scene::{Film, PixelFormat, SceneDescription, Sensor},
+    picture::Format,
+    render::{self, Coverage, Settings, Watch},
+    scene::{AovChannel, Film},
 };
 use keep::{KeepOptions, Name};
 use lesson::Lesson;
+use plan::planned;
+use save::Ended;
 use share::ShardOptions;
 
 const PICTURE: &str = "Picture";
@@ -44,7 +50,9 @@ const MACHINE: &str = "Machine (never changes a bit of the picture)";
 const EXAMPLES: &str = "\
 Examples:
   packlight render scenes/cornell.xml -o cornell.exr --aov albedo,normal,depth
-  packlight render scenes/cornell.xml -o preview.png --time-limit 10s --tonemap agx
+  packlight render scenes/cornell.xml -o preview.png --time-limit 10s --tonemap agx --denoise
+  packlight render scenes/cornell.xml -o detail.exr --crop 200,312,96,180 --spp 1024
+  packlight render scenes/cornell.xml -o live.exr --display-server localhost:14158
   packlight render scenes/cornell.xml -o clean.exr --spp 4096 --target-error 0.01
   packlight render scenes/cornell.xml -o long.exr --checkpoint kept.exr --resume kept.exr
   packlight render scenes/cornell.xml -o part-3.exr --shard 3/16";
@@ -76,6 +84,13 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "H", help_heading = PICTURE, value_parser = side())]
     height: Option<u32>,
 
+    /// Only these columns and rows of the picture: from x0 up to, and without, x1
+    ///
+    /// In pixels of the whole picture, in place of the scene's own crop. Pixels are to the bit what they are in
+    /// the whole; but tiles begin at the crop, so by --target-error others of them may be done.
+    #[arg(long, value_name = "x0,x1,y0,y1", help_heading = PICTURE, conflicts_with = "pixel", value_parser = crop::parse)]
+    crop: Option<crop::Bounds>,
+
     /// Seed of every random decision
     #[arg(long, value_name = "N", help_heading = PICTURE)]
     seed: Option<u32>,
@@ -83,6 +98,13 @@ pub(super) struct Arguments {
     /// Layers of the .exr beside the picture: what the camera sees, averaged over the pixel
     #[arg(long, value_name = "NAME,…", help_heading = PICTURE, value_delimiter = ',')]
     aov: Vec<aovs::Layer>,
+
+    /// A second picture without noise, OUT.denoised.EXT, by Open Image Denoise; OUT stays as it is
+    ///
+    /// It looks at the layers albedo and normal; they are in the files only if --aov names them, and in a part to
+    /// be continued. The library is looked for where OIDN_LIB says, else where the system has libraries.
+    #[arg(long, help_heading = PICTURE, conflicts_with = "pixel")]
+    denoise: bool,
 
     /// A part of the picture is done when its relative error is estimated to be as small as this; --spp is
     /// the most it takes
@@ -120,6 +142,10 @@ pub(super) struct Arguments {
     #[command(flatten, next_help_heading = MACHINE)]
     quality: QualityOption,
 
+    /// Show the picture while it is rendered: in tev, or whatever listens there as tev does
+    #[arg(long, value_name = "HOST:PORT", help_heading = MACHINE, conflicts_with = "pixel", value_parser = display::parse)]
+    display_server: Option<display::Server>,
+
     /// Shade hits as they come, not sorted by material: for measurement
     #[arg(long, help_heading = MACHINE)]
     no_sort: bool,
@@ -156,6 +182,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let Some(output) = &arguments.output else { return Ok(()) };
     output.check()?;
+    if arguments.denoise {
+        check_writable(&denoised::beside(&output.path))?;
+    }
     arguments.keep.check()?;
     signals::listen();
     let (report, coverage) = pool.install(|| picture(arguments, output))?;
@@ -201,23 +230,10 @@ pub(super) fn check(arguments: &Arguments) -> Result<(), Failure> {
     arguments.output.as_ref().map_or(Ok(()), |output| planned(arguments, output).map(drop))
 }
 
-/// The scene with everything that the command line says of it, the time it took to load, and what is to be
-/// rendered.
-fn planned(arguments: &Arguments, output: &Output) -> Result<(SceneDescription, Duration, Plan), Failure> {
-    let (mut description, load_time) = arguments.source.load()?;
-    arguments.overrides().apply(&mut description);
-    description.aovs = arguments.aov.iter().map(|layer| layer.channel()).collect();
-    can_hold(output.format, &description)?;
-    if let Some(option) = arguments.style.only_for_png().filter(|_| output.format != Format::Png) {
-        warn_of(format!("{option} only changes a .png; the numbers of this file stay linear"));
-    }
-    let plan = arguments.plan(&description, output.format)?;
-    Ok((description, load_time, plan))
-}
-
 /// Load, compile, render, save.
 fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage), Failure> {
     let (description, load_time, plan) = planned(arguments, output)?;
+    let denoiser = arguments.denoise.then(denoised::load).transpose()?;
     let scene = compile_with(&description, arguments.quality.quality())?;
     warn_of_doubts(&description, scene.summary().degenerate);
     let settings = arguments.settings();
@@ -229,15 +245,15 @@ fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage),
     let deadline = arguments.time_limit.map(|limit| Instant::now() + limit);
     let late = || deadline.is_some_and(|deadline| Instant::now() >= deadline);
     let watch = Watch { progress: &|progress| bar.show(progress), stop: &|| signals::wished() || late() };
-    arguments.keep.keeping(&frame, &name, || frame.render(&scene, &settings, &watch));
+    let render = || frame.render(&scene, &settings, &watch);
+    let server = arguments.display_server.as_ref();
+    arguments.keep.keeping(&frame, &name, || display::showing(server, &frame, &output.path, render));
     bar.finish();
 
     let coverage = frame.coverage();
-    // A part keeps colours, to go on from; only a picture has the film's format.
-    let is_part = output.format == Format::Exr && (plan.shard != render::Shard::WHOLE || !coverage.complete);
-    let developed = frame.develop();
-    let developed = if is_part { developed } else { developed.formatted(&scene, &settings) };
-    save(arguments, output, &frame, &name, &developed, is_part)?;
+    let denoiser = denoiser.as_ref();
+    let ended = Ended { arguments, output, scene: &scene, frame: &frame, name: &name, denoiser };
+    let (statistics, denoised) = ended.save()?;
     let report = Report::from(Sources {
         scene: arguments.source.path.display().to_string(),
         output: output.path.display().to_string(),
@@ -246,49 +262,14 @@ fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage),
         coverage,
         settings,
         summary: scene.summary(),
-        statistics: developed.statistics,
+        statistics,
         lesson: arguments.stats.then(|| Lesson::new(&scene)),
+        denoised,
         load_time,
         threads: rayon::current_num_threads(),
         peak_memory: memory::peak(),
     });
     Ok((report, coverage))
-}
-
-/// The picture; and its sums, if it is a shard or not finished.
-fn save(
-    arguments: &Arguments,
-    output: &Output,
-    frame: &Frame,
-    name: &Name<'_>,
-    render::Rendered { picture, statistics }: &render::Rendered,
-    is_part: bool,
-) -> Result<(), Failure> {
-    let about = About {
-        scene: name.scene,
-        facts: name.facts,
-        samples: frame.samples(),
-        statistics,
-        coverage: frame.coverage(),
-    };
-    let style = arguments.style.style(&about);
-    let saved = if is_part {
-        part_file::save(&name.part(frame), &output.path, &style)
-    } else {
-        save_with(picture, &output.path, &style).map_err(|error| error.to_string())
-    };
-    let checkpoint = arguments.keep.checkpoint.as_deref();
-    saved.map_err(|error| rescue::rescue(frame, name, &output.path, checkpoint, &error))
-}
-
-/// Named channels fit nowhere but into an EXR.
-fn can_hold(format: Format, description: &SceneDescription) -> Result<(), Failure> {
-    let is_aov = IntegratorName::from(&description.integrator) == IntegratorName::Aov;
-    if format == Format::Exr || (!is_aov && description.aovs.is_empty()) {
-        return Ok(());
-    }
-    let message = "layers and the aov integrator write named channels, which only an .exr can hold";
-    Err(Cli::command().error(ErrorKind::ArgumentConflict, message).into())
 }
 
 impl Arguments {
@@ -302,34 +283,9 @@ impl Arguments {
         }
     }
 
-    /// What is to be rendered of the scene.
-    fn plan(&self, description: &SceneDescription, format: Format) -> Result<Plan, Failure> {
-        let refuse = |message: String| Err(Cli::command().error(ErrorKind::ArgumentConflict, message).into());
-        let target_error = self.target_error;
-        if target_error.is_some() && IntegratorName::from(&description.integrator) == IntegratorName::Aov {
-            return refuse(
-                "--target-error is the error of light, which the aov integrator does not write".into(),
-            );
-        }
-        let Some(shard) = self.share.get()? else {
-            return Ok(Plan { target_error, ..Plan::default() });
-        };
-        if format != Format::Exr {
-            return refuse("the sums of a shard fit only into an .exr".into());
-        }
-        if target_error.is_some() && shard.by == render::ShardBy::Samples {
-            return refuse("--target-error needs all samples of a tile at hand; use --shard-by tiles".into());
-        }
-        let Sensor { film, sampler, .. } = &description.sensor;
-        if film.format != PixelFormat::Rgb {
-            return refuse(
-                "shards are merged without the scene, and so only with a pixel_format of rgb".into(),
-            );
-        }
-        match share::too_many(shard, sampler.sample_count, render::tile_count(film.window())) {
-            Some(why) => refuse(why),
-            None => Ok(Plan { shard, target_error }),
-        }
+    /// The layers that are asked for.
+    fn layers(&self) -> Vec<AovChannel> {
+        self.aov.iter().map(|layer| layer.channel()).collect()
     }
 
     fn settings(&self) -> Settings {

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::{
     overrides::IntegratorName,
     quantity::{counted, grouped, mebibytes, mega, mega_per_second, time},
-    render::lesson::Lesson,
+    render::{denoised::Denoised, lesson::Lesson},
 };
 use crate::{
     compile::Summary,
@@ -46,6 +46,8 @@ pub(super) struct Report {
     lane_use: LaneUse,
     invalid_samples: u64,
     first_invalid: Option<Sample>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    denoised: Option<Denoised>,
     #[serde(skip_serializing_if = "Option::is_none")]
     stats: Option<Lesson>,
     #[serde(skip)]
@@ -96,6 +98,7 @@ pub(super) struct Sources<'a> {
     pub(super) summary: Summary,
     pub(super) statistics: Statistics,
     pub(super) lesson: Option<Lesson>,
+    pub(super) denoised: Option<Denoised>,
     pub(super) load_time: Duration,
     pub(super) threads: usize,
     pub(super) peak_memory: Option<u64>,
@@ -143,6 +146,7 @@ impl From<Sources<'_>> for Report {
             },
             invalid_samples: statistics.invalid_samples,
             first_invalid: statistics.first_invalid.map(|(x, y, sample)| Sample { x, y, sample }),
+            denoised: from.denoised,
             stats: from.lesson,
             options: from.options,
             peak_memory_bytes: from.peak_memory,
@@ -195,6 +199,9 @@ impl fmt::Display for Report {
             self.samples(),
             self.integrator
         )?;
+        if let Some(Denoised { output, by, seconds: spent }) = &self.denoised {
+            writeln!(f, "  denoised {output}, by {by} in {}", seconds(*spent))?;
+        }
         writeln!(
             f,
             "  scene    {}, {}, {}, {}",
@@ -261,6 +268,7 @@ mod tests {
             summary: Summary { triangles: 1234, lights: 1, ..Summary::default() },
             statistics,
             lesson: None,
+            denoised: None,
             load_time: Duration::from_millis(12),
             threads: 2,
             peak_memory: None,

@@ -20,7 +20,7 @@ pub const BLOCK: u32 = 16;
 /// Sums over the pixels of a tile, of some samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sums {
-    /// Channel after channel, in each pixel after pixel.
+    /// Pixel after pixel, in each channel after channel.
     pub values: Vec<f32>,
     /// What the samples of each pixel count together.
     pub weights: Vec<f32>,
@@ -41,11 +41,12 @@ impl Sums {
         self
     }
 
+    /// Adds a sample of a pixel: a value for each channel.
     #[inline]
-    pub(super) fn add(&mut self, pixel: usize, weight: f32, value: impl Fn(usize) -> f32) {
-        let pixels = self.counts.len();
-        for (c, plane) in self.values.chunks_exact_mut(pixels).enumerate() {
-            plane[pixel] += value(c) * weight;
+    pub(super) fn add(&mut self, pixel: usize, weight: f32, values: &[f32]) {
+        let sums = &mut self.values[pixel * values.len()..][..values.len()];
+        for (sum, value) in sums.iter_mut().zip(values) {
+            *sum += value * weight;
         }
         self.weights[pixel] += weight;
         self.counts[pixel] += 1;
@@ -69,7 +70,8 @@ impl Sums {
     /// Divided by their weights, so that what is the same everywhere stays the same; but a few samples of
     /// both signs may weigh nothing together, and are then divided by their number.
     pub fn mean(&self, pixel: usize, channel: usize) -> f32 {
-        let sum = self.values[channel * self.counts.len() + pixel];
+        let channels = self.values.len() / self.counts.len();
+        let sum = self.values[pixel * channels + channel];
         match (self.counts[pixel], self.weights[pixel]) {
             (0, _) => 0.0,
             (_, weight) if weight > 0.0 => sum / weight,
@@ -119,7 +121,7 @@ mod tests {
 
     fn block(index: u32) -> Node {
         let mut sums = Sums::new(1, 1);
-        sums.add(0, 1.0, |_| 1.0 / (index + 1) as f32);
+        sums.add(0, 1.0, &[1.0 / (index + 1) as f32]);
         Node { level: 0, index, sums }
     }
 

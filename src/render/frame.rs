@@ -27,6 +27,7 @@ use super::{
 use crate::{
     compile::Scene,
     film::{self, Film, Tile, TileFilm, spread::Spread},
+    picture::Picture,
     scene::Crop,
 };
 
@@ -61,6 +62,19 @@ pub struct Coverage {
     pub most: u32,
     /// Is nothing left to do?
     pub complete: bool,
+}
+
+/// A tile as it was when somebody looked.
+#[derive(Clone, Debug)]
+pub struct TileView {
+    /// First column, in the picture.
+    pub x: u32,
+    /// First row, in the picture.
+    pub y: u32,
+    /// Samples a pixel that it has.
+    pub samples: u32,
+    /// Their means.
+    pub picture: Picture,
 }
 
 /// A picture that is being rendered.
@@ -216,6 +230,38 @@ impl Frame {
         }
         coverage.least = coverage.least.min(coverage.most);
         coverage
+    }
+
+    /// Columns and rows of the picture.
+    pub fn size(&self) -> [u32; 2] {
+        [self.window.width, self.window.height]
+    }
+
+    /// The picture's channels, by name.
+    pub fn channels(&self) -> &[String] {
+        &self.channels
+    }
+
+    /// Tiles that are to be rendered.
+    pub fn tiles(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// One of the tiles as it is now, if it has samples, and others than the `seen` that somebody has seen.
+    ///
+    /// # Panics
+    /// If there is no such tile.
+    pub fn tile(&self, index: usize, seen: u32) -> Option<TileView> {
+        let cell = &self.cells[index];
+        let (samples, total) = {
+            let film = &lock(&cell.state).film;
+            let samples = film.samples.len() as u32;
+            (samples != seen).then(|| (samples, film.total()))?
+        };
+        let Tile { x, y, width, height } = cell.tile;
+        let mut film = Film::new(width, height, &self.channels);
+        film.place(&Tile { x: 0, y: 0, width, height }, &total);
+        Some(TileView { x: x - self.window.x, y: y - self.window.y, samples, picture: film.develop() })
     }
 
     /// The picture as it is now, and what it took.

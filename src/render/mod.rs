@@ -13,6 +13,7 @@ mod direct;
 mod frame;
 mod integrator;
 mod irradiance;
+mod layers;
 pub mod measure;
 pub mod meter;
 pub mod part;
@@ -29,7 +30,7 @@ mod vertex;
 mod wavefront;
 mod whitted;
 
-pub use frame::{Coverage, Frame, Plan, Watch, tile_count};
+pub use frame::{Coverage, Frame, Plan, TileView, Watch, tile_count};
 pub use irradiance::Receiver;
 pub use ray_classes::{Query, RayClass, ray_classes};
 pub use shard::{Shard, ShardBy};

@@ -8,11 +8,11 @@ use std::time::Instant;
 
 use bumpalo::{Bump, collections::Vec as BumpVec};
 
-use super::aov::{AovIntegrator, Beside};
 use super::camera_rays::{self, Pixels};
 use super::connections::Connections;
 use super::frame::Visit;
 use super::integrator::{Integrator, Outgoing, Path};
+use super::layers::{Layers, Quad};
 use super::rows::{Hits, Packet, Paths, fill, reserve};
 use super::sort::{Sorter, for_each_unsorted_group};
 use super::statistics::{Stage, Statistics};
@@ -29,9 +29,8 @@ use crate::simd::{Bits, LANES, Mask, Mask8, Real, Vec3x8, f32x8, u32x8};
 pub(super) struct Wavefront<'a, I> {
     scene: &'a Scene,
     integrator: &'a I,
-    /// Channels of the integrator, before those of what the camera sees besides.
-    lit: usize,
-    beside: Option<AovIntegrator>,
+    /// What the camera sees besides, in channels behind those of the integrator.
+    layers: Option<Layers<'a>>,
     sort: bool,
     channels: usize,
     tracer: Tracer,
@@ -43,16 +42,14 @@ pub(super) struct Wavefront<'a, I> {
     out: Outputs<'a>,
     /// For each pixel what its sample counts.
     weights: BumpVec<'a, f32x8>,
-    /// What a pixel's paths have brought, four channels at a time, pixel after pixel.
+    /// What a pixel's paths have brought: all channels, in so many quads a pixel.
     sums: BumpVec<'a, Quad>,
+    quads: usize,
 }
-
-/// Four channels, added by one instruction.
-type Quad = [f32; 4];
 
 /// What the groups of a round have said, by slot.
 struct Outputs<'a> {
-    /// The channels of this round are so many quads, the last one padded.
+    /// The integrator's channels are so many quads, the last one padded.
     quads: usize,
     /// What the vertex adds, four channels at a time, slot after slot.
     added: BumpVec<'a, Quad>,
@@ -66,11 +63,12 @@ struct Outputs<'a> {
 impl<'a, I: Integrator> Wavefront<'a, I> {
     pub(super) fn new(arena: &'a Bump, scene: &'a Scene, integrator: &'a I, sort: bool) -> Self {
         let (lit, channels) = (integrator.channels().len(), integrator.all_channels(scene).len());
+        let layers = (channels > lit).then(|| Layers::new(arena, scene, lit..channels));
+        let quads = layers.as_ref().map_or(lit.div_ceil(4), Layers::quads);
         Self {
             scene,
             integrator,
-            lit,
-            beside: (channels > lit).then(|| AovIntegrator { channels: scene.aovs.clone() }),
+            layers,
             sort,
             channels,
             tracer: Tracer::new(()),
@@ -79,7 +77,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             keys: BumpVec::new_in(arena),
             sorter: Sorter::new(arena, scene.materials.len() + 1),
             out: Outputs {
-                quads: channels.div_ceil(4),
+                quads: lit.div_ceil(4),
                 added: BumpVec::new_in(arena),
                 connections: Connections::new(arena),
                 next: Paths::new(arena),
@@ -88,6 +86,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             },
             weights: BumpVec::new_in(arena),
             sums: BumpVec::new_in(arena),
+            quads,
         }
     }
 
@@ -102,10 +101,9 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             statistics.spend(Stage::Shade, start);
             self.run(sample, &mut statistics);
             visit.finish(statistics, |film| {
-                for (place, &pixel) in pixels.places.iter().enumerate() {
+                for (place, sums) in self.sums.chunks_exact(self.quads).enumerate() {
                     let weight = self.weights[place / LANES].lane(place % LANES);
-                    let values = &self.sums[place * self.quads()..];
-                    film.add(pixel as usize, weight, |c| values[c / 4][c % 4]);
+                    film.add(pixels.places[place] as usize, weight, &sums.as_flattened()[..self.channels]);
                 }
             });
             match visit.next() {
@@ -113,11 +111,6 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
                 None => return,
             }
         }
-    }
-
-    /// Of all channels of a pixel.
-    fn quads(&self) -> usize {
-        self.channels.div_ceil(4)
     }
 
     /// What one sample of the pixel (x, y) brings to each channel, finite or not.
@@ -132,8 +125,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     fn start(&mut self, pixels: &Pixels, sample: u32) {
         let len = pixels.places.len();
         self.sums.clear();
-        let quads = self.quads();
-        self.sums.resize(len * quads, [0.0; 4]);
+        self.sums.resize(len * self.quads, [0.0; 4]);
         self.weights.clear();
         self.paths.resize(len);
         let slots = u32x8::from_fn(|i| i as u32);
@@ -151,8 +143,6 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     fn run(&mut self, sample: u32, statistics: &mut Statistics) {
         let mut depth = 0;
         while self.paths.len > 0 {
-            // What the camera sees besides is said in the first round.
-            self.out.quads = if depth == 0 { self.quads() } else { self.lit.div_ceil(4) };
             self.out.clear(self.paths.len, self.integrator.shadow_rays(self.scene));
             if depth == 0 && self.integrator.begins() {
                 self.begin(sample, statistics);
@@ -191,8 +181,9 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
 
     fn shade(&mut self, depth: u32, sample: u32, statistics: &mut Statistics) {
         let start = Instant::now();
-        let Self { scene, integrator, lit, beside, paths, hits, keys, sorter, out, .. } = self;
-        let beside = beside.as_ref().filter(|_| depth == 0);
+        let Self { scene, integrator, layers, paths, hits, keys, sorter, out, sums, .. } = self;
+        // What the camera sees besides is said in the first round.
+        let mut layers = layers.as_mut().filter(|_| depth == 0);
         let miss = scene.materials.len() as u32;
         keys.clear();
         keys.extend((0..paths.len).map(|slot| match hits.primitive(slot) {
@@ -208,19 +199,22 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             lanes.add(slots.len() as u32);
             let at = fill(slots);
             let Packet { org, dir, path, pixel, .. } = paths.packet(&at, depth, sample);
+            let pixels = pixel.to_array();
             let mut group = Group { slots: at, count: slots.len(), pixel, out };
             if key == miss {
                 integrator.miss(scene, &path, (org, dir), &mut group);
-                if let Some(beside) = beside {
-                    beside.miss(scene, &path, (org, dir), &mut Beside { out: &mut group, first: *lit });
+                if let Some(layers) = &mut layers {
+                    layers.put(&pixels[..slots.len()], sums, |aovs, out| {
+                        aovs.miss(scene, &path, (org, dir), out);
+                    });
                 }
                 return;
             }
             let (tuv, primitive) = hits.packet(&at);
             let vertex = Vertex::new(scene, path, (org, dir), tuv, primitive, MaterialId(key));
             integrator.shade(scene, &vertex, &mut group);
-            if let Some(beside) = beside {
-                beside.shade(scene, &vertex, &mut Beside { out: &mut group, first: *lit });
+            if let Some(layers) = &mut layers {
+                layers.put(&pixels[..slots.len()], sums, |aovs, out| aovs.shade(scene, &vertex, out));
             }
         };
         if self.sort {
@@ -241,12 +235,11 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
 
     /// Adds each vertex to its pixel: vertices in the order of slots, light in the order of its index.
     fn add(&mut self) {
-        let of_all = self.quads();
-        let Self { paths, out: Outputs { quads, added, connections, .. }, sums, .. } = self;
-        let quads = *quads;
-        connections.for_each(|slot, channel, light| added[slot * quads][channel] += light);
-        for (slot, values) in added.chunks_exact(quads).enumerate() {
-            let sums = &mut sums[paths.pixel(slot) * of_all..][..quads];
+        let Self { paths, out: Outputs { quads: lit, added, connections, .. }, sums, quads, .. } = self;
+        let lit = *lit;
+        connections.for_each(|slot, channel, light| added[slot * lit][channel] += light);
+        for (slot, values) in added.chunks_exact(lit).enumerate() {
+            let sums = &mut sums[paths.pixel(slot) * *quads..][..lit];
             for (sums, values) in sums.iter_mut().zip(values) {
                 *sums = std::array::from_fn(|c| sums[c] + values[c]);
             }

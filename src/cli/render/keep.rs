@@ -1,13 +1,10 @@
 //! `--checkpoint` and `--resume`: what is rendered is not lost.
 
-use std::{
-    path::PathBuf,
-    sync::{Condvar, Mutex, PoisonError},
-    time::Duration,
-};
+use std::{path::PathBuf, time::Duration};
 
 use clap::Args;
 
+use super::meanwhile::meanwhile;
 use crate::{
     cli::{
         duration,
@@ -75,27 +72,20 @@ impl KeepOptions {
     pub(super) fn keeping(&self, frame: &Frame, name: &Name<'_>, work: impl FnOnce()) {
         let Some(path) = &self.checkpoint else { return work() };
         let write = || part_file::save(&name.part(frame), path, &quick());
-        let done = (Mutex::new(false), Condvar::new());
-        std::thread::scope(|scope| {
-            let keeper = scope.spawn(|| {
-                let mut warned = false;
-                while !wait(&done, self.every) {
-                    match write() {
-                        Ok(()) => warned = false,
-                        // Rendering goes on: the disk may have room again next time.
-                        Err(error) if !warned => {
-                            warned = true;
-                            warn_of(format!("the checkpoint could not be written: {error}"));
-                        }
-                        Err(_) => {}
-                    }
+        let mut warned = false;
+        let keep = || {
+            match write() {
+                Ok(()) => warned = false,
+                // Rendering goes on: the disk may have room again next time.
+                Err(error) if !warned => {
+                    warned = true;
+                    warn_of(format!("the checkpoint could not be written: {error}"));
                 }
-            });
-            work();
-            *done.0.lock().unwrap_or_else(PoisonError::into_inner) = true;
-            done.1.notify_all();
-            drop(keeper.join());
-        });
+                Err(_) => {}
+            }
+            self.every
+        };
+        meanwhile(self.every, keep, work);
         if let Err(error) = write() {
             warn_of(format!("the last checkpoint could not be written: {error}"));
         }
@@ -105,11 +95,4 @@ impl KeepOptions {
 /// Written often, read seldom.
 pub(super) fn quick() -> Style {
     Style { exr: ExrStyle { compression: ExrCompression::None, ..ExrStyle::default() }, ..Style::default() }
-}
-
-/// Waits for the end of the work, or for so long. Is it the end?
-fn wait((done, changed): &(Mutex<bool>, Condvar), time: Duration) -> bool {
-    let guard = done.lock().unwrap_or_else(PoisonError::into_inner);
-    let waited = changed.wait_timeout_while(guard, time, |done| !*done);
-    *waited.unwrap_or_else(PoisonError::into_inner).0
 }

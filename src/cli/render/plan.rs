@@ -1,0 +1,100 @@
+//! What the command line makes of a scene, as far as it can be known before anything is compiled.
+
+use std::time::Duration;
+
+use clap::{CommandFactory, error::ErrorKind};
+
+use super::{Arguments, denoised, share};
+use crate::{
+    cli::{
+        Cli,
+        failure::{Failure, warn_of},
+        output::Output,
+        overrides::IntegratorName,
+    },
+    picture::Format,
+    render::{self, Plan},
+    scene::{PixelFormat, Projection, SceneDescription, Sensor},
+};
+
+/// The scene with everything that the command line says of it, the time it took to load, and what is to be
+/// rendered.
+pub(super) fn planned(
+    arguments: &Arguments,
+    output: &Output,
+) -> Result<(SceneDescription, Duration, Plan), Failure> {
+    let (mut description, load_time) = arguments.source.load()?;
+    arguments.overrides().apply(&mut description);
+    let film = &mut description.sensor.film;
+    if let Some(bounds) = arguments.crop {
+        film.crop = Some(bounds.of(film).map_err(|message| refused(ErrorKind::ValueValidation, message))?);
+    }
+    description.aovs = arguments.layers();
+    can_hold(output.format, &description)?;
+    if arguments.denoise {
+        can_denoise(arguments, &description)?;
+        description.aovs.extend(denoised::besides(&description.aovs));
+    }
+    if let Some(option) = arguments.style.only_for_png().filter(|_| output.format != Format::Png) {
+        warn_of(format!("{option} only changes a .png; the numbers of this file stay linear"));
+    }
+    let plan = plan(arguments, &description, output.format)?;
+    Ok((description, load_time, plan))
+}
+
+fn refused(kind: ErrorKind, message: impl Into<String>) -> Failure {
+    Cli::command().error(kind, message.into()).into()
+}
+
+/// Named channels fit nowhere but into an EXR.
+fn can_hold(format: Format, description: &SceneDescription) -> Result<(), Failure> {
+    if format == Format::Exr || (!is_aov(description) && description.aovs.is_empty()) {
+        return Ok(());
+    }
+    let message = "layers and the aov integrator write named channels, which only an .exr can hold";
+    Err(refused(ErrorKind::ArgumentConflict, message))
+}
+
+/// Noise is that of light, in a whole picture that a camera sees.
+fn can_denoise(arguments: &Arguments, description: &SceneDescription) -> Result<(), Failure> {
+    let why = if is_aov(description) {
+        "--denoise takes the noise out of light, which the aov integrator does not write"
+    } else if matches!(description.sensor.projection, Projection::IrradianceMeter { .. }) {
+        "--denoise needs a picture, and a meter has one number"
+    } else if arguments.share.get()?.is_some() {
+        "--denoise needs a whole picture, and a shard has none"
+    } else {
+        return Ok(());
+    };
+    Err(refused(ErrorKind::ArgumentConflict, why))
+}
+
+fn is_aov(description: &SceneDescription) -> bool {
+    IntegratorName::from(&description.integrator) == IntegratorName::Aov
+}
+
+/// What is to be rendered of the scene.
+fn plan(arguments: &Arguments, description: &SceneDescription, format: Format) -> Result<Plan, Failure> {
+    let refuse = |message: &str| Err(refused(ErrorKind::ArgumentConflict, message));
+    let target_error = arguments.target_error;
+    if target_error.is_some() && is_aov(description) {
+        return refuse("--target-error is the error of light, which the aov integrator does not write");
+    }
+    let Some(shard) = arguments.share.get()? else {
+        return Ok(Plan { target_error, ..Plan::default() });
+    };
+    if format != Format::Exr {
+        return refuse("the sums of a shard fit only into an .exr");
+    }
+    if target_error.is_some() && shard.by == render::ShardBy::Samples {
+        return refuse("--target-error needs all samples of a tile at hand; use --shard-by tiles");
+    }
+    let Sensor { film, sampler, .. } = &description.sensor;
+    if film.format != PixelFormat::Rgb {
+        return refuse("shards are merged without the scene, and so only with a pixel_format of rgb");
+    }
+    match share::too_many(shard, sampler.sample_count, render::tile_count(film.window())) {
+        Some(why) => refuse(&why),
+        None => Ok(Plan { shard, target_error }),
+    }
+}

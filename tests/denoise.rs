@@ -1,0 +1,152 @@
+//! `--denoise`: the raw picture stays, and the other one is nearer to the truth.
+//!
+//! Open Image Denoise is where `OIDN_LIB` says (PyPI's `pyoidn` has it in `pyoidn/oidn/lib`) or where the system has
+//! libraries; without it, what needs it is skipped, aloud.
+
+#![allow(missing_docs)]
+
+mod program;
+
+use std::{env, fs, path::Path};
+
+use packlight::{
+    compare::difference,
+    denoise::Denoiser,
+    picture::{Encoding, Picture, decode, exr_attributes},
+};
+use program::{command, fails, folder, packlight, path, stderr, stdout};
+
+const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/cornell.xml");
+
+/// Exit code 1 where `OIDN_LIB` is this place, and all of these in the message.
+fn fails_without_library(arguments: &[&str], place: &str, parts: &[&str]) {
+    let output = command(arguments).env("OIDN_LIB", place).output().expect("the program starts");
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    for part in parts {
+        assert!(stderr(&output).contains(part), "{part} is not in\n{}", stderr(&output));
+    }
+}
+
+fn has_library() -> bool {
+    let found = Denoiser::load(env::var_os("OIDN_LIB").as_deref(), 1);
+    if let Err(error) = &found {
+        println!("skipped: {error}");
+    }
+    found.is_ok()
+}
+
+fn render(out: &str, more: &[&str]) -> String {
+    let words = ["render", SCENE, "-o", out, "--width", "96", "--json", "--threads", "2"];
+    let output = packlight(&[&words[..], more].concat());
+    assert_eq!(output.status.code(), Some(0), "{more:?}: {}", stderr(&output));
+    stdout(&output)
+}
+
+fn read(file: &str) -> Picture {
+    decode(file.as_ref(), Encoding::Raw).expect("it was written")
+}
+
+fn names(file: &str) -> Vec<String> {
+    let image = exr::prelude::read_all_flat_layers_from_file(file).expect("it was written");
+    image.layer_data[0].channel_data.list.iter().map(|channel| channel.name.to_string()).collect()
+}
+
+#[test]
+fn without_the_library_it_is_said_what_was_looked_for_before_anything_is_rendered() {
+    let folder = folder("denoise/nowhere");
+    let out = path(&folder, "out.exr");
+    let words = ["render", SCENE, "-o", &out, "--denoise", "--spp", "1", "--width", "8"];
+    let parts = ["--denoise: Open Image Denoise 2 was not found; looked for", "OIDN_LIB=PATH"];
+    fails_without_library(&words, "/no/such/library.so", &[&parts[..], &["/no/such/library.so"]].concat());
+    let nothing = folder.display().to_string();
+    fails_without_library(&words, &nothing, &[&parts[..], &[&nothing, "OpenImageDenoise"]].concat());
+    // A file that is no library, and one that is another.
+    fails_without_library(&words, SCENE, &parts);
+    assert!(!Path::new(&out).exists());
+}
+
+#[test]
+fn what_has_no_noise_of_light_is_refused() {
+    let folder = folder("denoise/refused");
+    let out = path(&folder, "out.exr");
+    let refused = |more: &[&str], part: &str| {
+        fails(&[&["render", SCENE, "-o", &out, "--denoise"], more].concat(), 2, part);
+    };
+    refused(&["--integrator", "aov"], "the aov integrator does not write");
+    refused(&["--shard", "1/2"], "a shard has none");
+}
+
+#[test]
+fn the_raw_picture_stays_and_the_other_is_nearer_to_the_truth() {
+    if !has_library() {
+        return;
+    }
+    let folder = folder("denoise/nearer");
+    let file = |name: &str| path(&folder, name);
+    render(&file("truth.exr"), &["--spp", "512"]);
+    render(&file("raw.exr"), &["--spp", "16"]);
+    let told = render(&file("out.exr"), &["--spp", "16", "--denoise"]);
+    // Not a byte differs: it does not even know that there is another.
+    assert!(fs::read(file("raw.exr")).expect("written") == fs::read(file("out.exr")).expect("written"));
+    let told: serde_json::Value = serde_json::from_str(&told).expect("JSON");
+    assert_eq!(told["denoised"]["output"], file("out.denoised.exr").as_str());
+    let by = told["denoised"]["by"].as_str().expect("a name");
+    assert!(by.starts_with("Open Image Denoise 2."), "{by}");
+    let said = exr_attributes(&fs::read(file("out.denoised.exr")).expect("written"));
+    assert!(said.contains(&("packlight.denoiser".into(), by.into())), "{said:?}");
+    let truth = read(&file("truth.exr"));
+    let error = |name: &str| difference(&truth, &read(&file(name))).expect("of one size").rel_mse;
+    let (noisy, clean) = (error("out.exr"), error("out.denoised.exr"));
+    assert!(clean < 0.2 * noisy, "relMSE {clean}, and {noisy} before");
+    assert_eq!(names(&file("out.denoised.exr")), ["B", "G", "R"]);
+}
+
+#[test]
+fn layers_and_formats_are_those_that_were_asked_for() {
+    if !has_library() {
+        return;
+    }
+    let folder = folder("denoise/formats");
+    let file = |name: &str| path(&folder, name);
+    let few = ["--spp", "4", "--denoise"];
+    render(&file("a.exr"), &[&few[..], &["--aov", "depth,normal"]].concat());
+    let asked = ["B", "G", "R", "depth.Z", "normal.X", "normal.Y", "normal.Z"];
+    assert_eq!(
+        (names(&file("a.exr")), names(&file("a.denoised.exr"))),
+        (asked.map(String::from).into(), asked.map(String::from).into())
+    );
+    for extension in ["png", "hdr"] {
+        render(&file(&format!("b.{extension}")), &few);
+        assert!(Path::new(&file(&format!("b.denoised.{extension}"))).exists());
+    }
+    let grey = file("grey.xml");
+    let text = fs::read_to_string(SCENE).expect("readable");
+    let format = "<film type=\"hdrfilm\"><string name=\"pixel_format\" value=\"luminance_alpha\"/>";
+    fs::write(&grey, text.replacen("<film type=\"hdrfilm\">", format, 1)).expect("writable");
+    let words = ["render", &grey, "-o", &file("c.exr"), "-q", "--width", "40"];
+    let output = packlight(&[&words[..], &few].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(
+        (names(&file("c.exr")), names(&file("c.denoised.exr"))),
+        (vec!["A".into(), "Y".into()], vec!["A".into(), "Y".into()])
+    );
+}
+
+#[test]
+fn what_was_stopped_is_denoised_and_can_go_on() {
+    if !has_library() {
+        return;
+    }
+    let folder = folder("denoise/stopped");
+    let file = |name: &str| path(&folder, name);
+    let endless = ["--spp", "100000", "--time-limit", "300ms", "--denoise"];
+    render(&file("part.exr"), &endless);
+    assert_eq!(names(&file("part.denoised.exr")), ["B", "G", "R"]);
+    render(&file("more.exr"), &[&endless[..], &["--resume", &file("part.exr")]].concat());
+    let whole = ["--spp", "24", "--denoise"];
+    let kept = file("kept.exr");
+    render(&file("fewer.exr"), &["--spp", "9", "--denoise", "--checkpoint", &kept]);
+    render(&file("resumed.exr"), &[&whole[..], &["--resume", &kept]].concat());
+    render(&file("whole.exr"), &whole);
+    assert!(fs::read(file("resumed.exr")).expect("written") == fs::read(file("whole.exr")).expect("written"));
+}
