@@ -13,7 +13,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use program::{command, folder, packlight, path, stderr};
+use program::{command, folder, packlight, path, stderr, stdout};
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/cornell.xml");
 
@@ -207,9 +207,22 @@ fn a_finished_render_goes_on_to_more_samples() {
         succeeds(&[&["render", SCENE, "-o", out, "--width", "40", "--quiet"], more].concat());
     };
     render(&out, &["--spp", "21", "--checkpoint", &kept]);
-    render(&out, &["--spp", "50", "--resume", &kept]);
     render(&whole, &["--spp", "50"]);
-    same(&out, &whole);
+    let goes_on = |more: &str| {
+        let output = packlight(&[
+            "render", SCENE, "-o", &out, "--width", "40", "--spp", "50", "--resume", &kept, more,
+        ]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        same(&out, &whole);
+        stdout(&output)
+    };
+    let text = goes_on("--stats");
+    assert!(
+        text.starts_with(&format!("{kept} has 21 of 50 samples a pixel; going on from there\n")),
+        "{text}"
+    );
+    assert_eq!(goes_on("--quiet"), "");
+    assert!(goes_on("--json").starts_with('{'));
 }
 
 /// Long enough to be stopped by hand.
@@ -449,7 +462,7 @@ fn a_cluster_is_handed_a_script_and_mistakes_are_told_before() {
     let bin = folder.join("bin");
     fs::create_dir(&bin).expect("a folder can be made");
     let sbatch = "#!/bin/sh\ncat >\"$0.job\"\ncase \"$*\" in\n*--array=0-1*) for i in 0 1; do\n\
-                  SLURM_ARRAY_TASK_ID=$i sh \"$0.job\" || exit 1; done; echo '7;cluster';;\n\
+                  SLURM_ARRAY_TASK_ID=$i sh \"$0.job\" >&2 || exit 1; done; echo '7;cluster';;\n\
                   *--dependency=afterok:7\\ *) sh \"$0.job\" >&2 || exit 1; echo 8;;\n*) exit 1;;\nesac\n";
     fs::write(bin.join("sbatch"), sbatch).expect("writable");
     let run = "chmod +x \"$0/sbatch\" && PATH=\"$0:$PATH\" exec sh \"$1\"";

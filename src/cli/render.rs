@@ -240,7 +240,7 @@ fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage),
     let facts = metadata::facts(&description);
     let file = arguments.source.path.file_name().unwrap_or_default().to_string_lossy();
     let name = Name { scene: &file, facts: &facts };
-    let frame = arguments.keep.begin(&scene, plan, &name)?;
+    let frame = arguments.keep.begin(&scene, plan, &name, arguments.quiet || arguments.json)?;
     let bar = Bar::new(arguments.quiet);
     let deadline = arguments.time_limit.map(|limit| Instant::now() + limit);
     let late = || deadline.is_some_and(|deadline| Instant::now() >= deadline);

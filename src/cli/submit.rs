@@ -143,7 +143,7 @@ impl Slurm {
     fn check_render(&self) -> Result<(), Failure> {
         let (scene, shard) = (text(&self.scene)?, format!("1/{}", self.shards));
         let arguments = ["packlight", "render", &scene, "-o", "part.exr", "--shard", &shard, "--shard-by"];
-        let kept = [self.by(), "--checkpoint", "kept.exr", "--resume", "kept.exr", "--threads", "1", "-q"];
+        let kept = [self.by(), "--checkpoint", "kept.exr", "--resume", "kept.exr", "--threads", "1"];
         let words = arguments.iter().chain(&kept).copied().chain(self.options.iter().map(String::as_str));
         match Cli::try_parse_from(words)?.command {
             Ours::Render(arguments) => render::check(&arguments),

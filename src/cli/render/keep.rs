@@ -7,8 +7,9 @@ use clap::Args;
 use super::meanwhile::meanwhile;
 use crate::{
     cli::{
-        duration,
+        console, duration,
         failure::{Failure, warn_of},
+        metadata::samples,
         output::check_writable,
         part_file,
     },
@@ -56,16 +57,28 @@ impl KeepOptions {
         self.checkpoint.as_deref().map_or(Ok(()), check_writable)
     }
 
-    /// A frame with what is there already.
-    pub(super) fn begin(&self, scene: &Scene, plan: Plan, name: &Name<'_>) -> Result<Frame, Failure> {
+    /// A frame with what is there already; unless `quiet`, says how much that is.
+    pub(super) fn begin(
+        &self,
+        scene: &Scene,
+        plan: Plan,
+        name: &Name<'_>,
+        quiet: bool,
+    ) -> Result<Frame, Failure> {
         let Some(path) = &self.resume else { return Ok(Frame::new(scene, plan)) };
         if self.checkpoint.as_ref() == Some(path) && !path.exists() {
             return Ok(Frame::new(scene, plan));
         }
         let part = part_file::load(path)?;
-        Frame::resume(scene, plan, name.facts, part).map_err(|difference| {
-            Failure::Sentence(format!("{} is of another render: {difference}", path.display()))
-        })
+        let path = path.display();
+        let frame = Frame::resume(scene, plan, name.facts, part)
+            .map_err(|difference| Failure::Sentence(format!("{path} is of another render: {difference}")))?;
+        if !quiet {
+            let asked = plan.shard.samples(frame.samples()).len() as u32;
+            let there = samples(frame.coverage(), asked);
+            console::print(&format!("{path} has {there} samples a pixel; going on from there\n"))?;
+        }
+        Ok(frame)
     }
 
     /// Does `work`, and writes checkpoints meanwhile and afterwards.

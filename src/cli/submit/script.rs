@@ -48,7 +48,7 @@ impl fmt::Display for Script {
              part={folder}/part-$SLURM_ARRAY_TASK_ID.exr\n\
              kept={folder}/kept-$SLURM_ARRAY_TASK_ID.exr\n\
              exec {program} render {scene} -o \"$part\" --shard-from SLURM_ARRAY_TASK_ID --shards {shards} \
-             --shard-by {by} --checkpoint \"$kept\" --resume \"$kept\" --threads {cpus} --quiet{options}\n\
+             --shard-by {by} --checkpoint \"$kept\" --resume \"$kept\" --threads {cpus}{options}\n\
              SHARD\n\
              )\n\
              # On a federation of clusters the number is followed by a semicolon and a name.\n\
@@ -112,7 +112,7 @@ mod tests {
             r"mkdir -p 'it'\''s.16-tiles'",
             r"array=$(sbatch --parsable --job-name='it'\''s' --array=0-15 --requeue --open-mode=append --cpus-per-task=8 --output='it'\''s.16-tiles'/%a.log --partition=long <<'SHARD'",
             r"kept='it'\''s.16-tiles'/kept-$SLURM_ARRAY_TASK_ID.exr",
-            r#"exec /opt/packlight render 'rooms/a room.xml' -o "$part" --shard-from SLURM_ARRAY_TASK_ID --shards 16 --shard-by tiles --checkpoint "$kept" --resume "$kept" --threads 8 --quiet -D 'sky=$HOME'"#,
+            r#"exec /opt/packlight render 'rooms/a room.xml' -o "$part" --shard-from SLURM_ARRAY_TASK_ID --shards 16 --shard-by tiles --checkpoint "$kept" --resume "$kept" --threads 8 -D 'sky=$HOME'"#,
             r"exec /opt/packlight merge 'it'\''s.16-tiles'/part-*.exr -o 'it'\''s.exr'",
         ] {
             assert!(text.lines().any(|there| there == line), "{line}\nis not in\n{text}");
