@@ -16,13 +16,13 @@ use crate::geometry::Aabb;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quality {
     /// Sorted along the Morton curve \[LGS09\]: for a first look, or a scene that changes with every frame.
-    /// Built in 0.5 to 0.65 of medium's time; the SAH cost is 1.03 (soup) to 1.25 (kitchen) of medium's.
+    /// Built in 0.5 to 0.65 of medium's time; the SAH cost is 1.03 (soup) to 1.25 (terrain) of medium's.
     Fast,
     /// Binned SAH \[Wal07\], exact for the last sixteen primitives: for most pictures.
     #[default]
     Medium,
     /// Medium, then optimised by reinsertion \[MB18\]: for rays by the hundred million. Built in 4 to 8 times
-    /// medium's time; the SAH cost is 0.85 (kitchen), 0.87 (Sponza) to 0.998 (terrain) of medium's.
+    /// medium's time; the SAH cost is 0.83 (kitchen), 0.86 (Sponza) to 0.998 (terrain) of medium's.
     High,
 }
 
