@@ -12,7 +12,7 @@ use glam::Vec3;
 use packlight::bvh::{Tracer, Traversal, Way};
 use packlight::compile::{Scene, compile};
 use packlight::geometry::{Hit, PrimitiveId, Ray, Ray32, RayLanes, Rayx8};
-use packlight::scene::{Instance, SceneDescription};
+use packlight::scene::{Aov, AovChannel, Instance, SceneDescription};
 use packlight::simd::{Mask8, Real, Vector3, f32x8};
 use packlight::verify::aim::{Random, rays_at};
 
@@ -279,6 +279,8 @@ fn an_instance_is_what_its_group_is_elsewhere() {
         instance.to_world.matrix3.determinant().abs() > 1e-2 && instance.group != placed::DEGENERATE
     };
     description.instances.retain(fine);
+    // Somebody asks for the texture coordinates of spheres, too.
+    description.aovs = vec![AovChannel { name: "uv".into(), kind: Aov::Uv }];
     let flat = placed::flattened(&description);
     let (scene, flat) = (compile(&description).unwrap(), compile(&flat).unwrap());
     let own = scenes::quads().shapes.len() as u32 * 2;

@@ -11,30 +11,37 @@ use crate::picture::Picture;
 use crate::scene::{self, Distribution, Material};
 use crate::texture::{Bitmap, Filter, Texture, TextureId, TextureTable, UvMap, Wrap};
 
-/// The table, its textures, and the id of each described material.
+/// The table, its textures, and for each described material its id, and whether it is different at other (u, v).
 pub(super) fn compile(
     materials: &[Material],
     meshes: &AttributedMeshes,
-) -> (MaterialTable, TextureTable, Vec<MaterialId>) {
+) -> (MaterialTable, TextureTable, Vec<(MaterialId, bool)>) {
     let mut compiler = Compiler {
         meshes,
         textures: TextureTable::default(),
+        varies: false,
         seen: vec![],
         coats: vec![],
         ramps: vec![],
         measured: vec![],
     };
-    let rows = materials.iter().map(|material| compiler.row(material)).collect();
+    let row = |material| {
+        compiler.varies = false;
+        (compiler.row(material), compiler.varies)
+    };
+    let (rows, vary): (_, Vec<bool>) = materials.iter().map(row).unzip();
     let (table, ids) = {
         let coats = compiler.coats.into_iter().map(|(_, coat)| coat).collect();
         MaterialTable::new(rows, Tables { coats, ramps: compiler.ramps, measured: compiler.measured })
     };
-    (table, compiler.textures, ids)
+    (table, compiler.textures, ids.into_iter().zip(vary).collect())
 }
 
 struct Compiler<'m> {
     meshes: &'m AttributedMeshes,
     textures: TextureTable,
+    /// Has a texture been added that is not the same everywhere?
+    varies: bool,
     /// Pictures that several materials share are stored once.
     seen: Vec<(scene::Texture, TextureId)>,
     coats: Vec<(CoatKey, CoatRange)>,
@@ -245,6 +252,7 @@ impl Compiler<'_> {
     }
 
     fn add(&mut self, texture: &scene::Texture) -> TextureId {
+        self.varies |= !matches!(texture, scene::Texture::Constant(_));
         if let Some((_, id)) = self.seen.iter().find(|(seen, _)| same(seen, texture)) {
             return *id;
         }

@@ -29,7 +29,7 @@ use crate::film::Filter;
 use crate::geometry::Aabb;
 use crate::light::{Light, LightChoice, LightId, Sight};
 use crate::material::MaterialTable;
-use crate::scene::{AovChannel, Film, Integrator, Projection, Sampler, SceneDescription, Sensor};
+use crate::scene::{Aov, AovChannel, Film, Integrator, Projection, Sampler, SceneDescription, Sensor};
 use crate::texture::TextureTable;
 use attributes::AttributedMeshes;
 use instances::Instances;
@@ -154,7 +154,7 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
         Projection::IrradianceMeter { shape } => Some(shape),
         _ => None,
     };
-    let named = Named { materials: &material_ids, meshes: &meshes, metered };
+    let named = Named { materials: &material_ids, mapped: shows_uv(description), meshes: &meshes, metered };
     let mut lights = lights::without_surface(&description.emitters);
     let shapes::Shapes { surfaces, mut references, degenerate, metered } =
         shapes::compile(&description.shapes, &named, &mut lights)?;
@@ -217,6 +217,16 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
         aovs: description.aovs.clone(),
         summary,
     })
+}
+
+/// Are texture coordinates to be seen in a layer?
+fn shows_uv(description: &SceneDescription) -> bool {
+    let shown = |layers: &[AovChannel]| layers.iter().any(|layer| layer.kind == Aov::Uv);
+    let instead = match &description.integrator {
+        Integrator::Aov { channels } => shown(channels),
+        _ => false,
+    };
+    instead || shown(&description.aovs)
 }
 
 fn camera(sensor: &Sensor) -> Camera {

@@ -8,6 +8,9 @@ use crate::geometry::{Aabb, Hit, PrimitiveId, Ray, Rayx8};
 use crate::material::MaterialId;
 use crate::simd::{Bits, Mask8, Real, Vector3, f32x8, u32x8};
 
+/// Trees of so many nodes are gone through together.
+const FEW_NODES: usize = 8;
+
 impl Scene {
     /// The nearest hits of a packet; lanes that are not active, or hit nothing, have primitive
     /// [`PrimitiveId::NONE`] and t = +∞.
@@ -69,6 +72,14 @@ impl Scene {
     /// The nearest hit of a ray by testing every primitive: what every other way must equal to the bit.
     pub fn brute_force(&self, ray: &Ray) -> Hit {
         self.primitives.brute_force(ray)
+    }
+
+    /// How rays had better go that a renderer has many of: [`Way::Tile`] in a scene of a few dozen primitives,
+    /// whose boxes eight rays at once meet sooner than one ray finds its way among them.
+    #[inline]
+    pub(crate) fn way(&self) -> Way {
+        let few = self.bvh.nodes().len() <= FEW_NODES && self.primitives.instances.is_empty();
+        if few { Way::Tile } else { Way::Chosen }
     }
 
     /// Size of the scene along each axis; 0 if it is empty.

@@ -20,8 +20,10 @@ use crate::simd::{Real, Vector3};
 /// What shapes name by number.
 #[derive(Clone, Copy)]
 pub(super) struct Named<'a> {
-    /// By place in the description.
-    pub(super) materials: &'a [MaterialId],
+    /// By place in the description: which material, and whether it is different at other (u, v).
+    pub(super) materials: &'a [(MaterialId, bool)],
+    /// Does somebody ask for (u, v) besides?
+    pub(super) mapped: bool,
     pub(super) meshes: &'a AttributedMeshes,
     /// Place of the shape whose irradiance is measured.
     pub(super) metered: Option<u32>,
@@ -108,6 +110,7 @@ impl Shapes {
         let to_world = &shape.to_world;
         let first = self.surfaces.shape_of.len() as u32;
         let references = self.references.len();
+        let (material, varies) = named.materials[shape.material.0 as usize];
         let is_drawn_from = metered || shape.radiance.is_some();
         let (class, first_in_class, emitting) = match &shape.geometry {
             Geometry::Rectangle => {
@@ -126,7 +129,11 @@ impl Shapes {
                 let row = canonical::sphere(to_world, *center, *radius);
                 self.refer(row.sphere.bounds(), SPHERE);
                 self.surfaces.spheres.push(row);
-                (Class::Sphere, self.surfaces.spheres.len() - 1, Emitting::Sphere(row.sphere))
+                (
+                    Class::Sphere { mapped: varies || named.mapped },
+                    self.surfaces.spheres.len() - 1,
+                    Emitting::Sphere(row.sphere),
+                )
             }
             Geometry::Disk => self.add_canonical(canonical::disk(to_world)),
             Geometry::Cylinder { p0, p1, radius } => {
@@ -160,7 +167,7 @@ impl Shapes {
             first,
             first_in_class: first_in_class as u32,
             class,
-            material: named.materials[shape.material.0 as usize],
+            material,
             light,
             side,
             mesh,
@@ -251,7 +258,7 @@ impl Surfaces {
         let index = (id - shape.first + shape.first_in_class) as usize;
         match shape.class {
             Class::Triangles { .. } => Primitive::Triangle(self.triangle(index)),
-            Class::Sphere => Primitive::Sphere(self.spheres[index].sphere),
+            Class::Sphere { .. } => Primitive::Sphere(self.spheres[index].sphere),
             Class::Canonical => Primitive::Canonical(self.canonicals[index].surface),
         }
     }

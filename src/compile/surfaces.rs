@@ -33,8 +33,14 @@ pub(super) enum Interpolate {
 /// How a shape's primitives are looked up.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Class {
-    Triangles { uv: Interpolate, normal: Interpolate },
-    Sphere,
+    Triangles {
+        uv: Interpolate,
+        normal: Interpolate,
+    },
+    Sphere {
+        /// Does anybody look at (u, v)? If not, they need not be worked out.
+        mapped: bool,
+    },
     Canonical,
 }
 
@@ -157,7 +163,8 @@ impl Surfaces {
     ) -> Surface<R> {
         let shape = |i: usize| self.shape_of[primitive.lane(i) as usize];
         let first = shape(0);
-        let (part, side, light) = if (1..R::LANES).all(|i| shape(i) == first) {
+        let one = (!primitive.equal(R::Bits::splat(primitive.lane(0)))).none();
+        let (part, side, light) = if one || (1..R::LANES).all(|i| shape(i) == first) {
             let row = &self.shapes[first as usize];
             let part = self.of_one_shape(row, (org, dir), (t, u, v), primitive);
             (part, R::splat(row.side), R::Bits::splat(row.light.0))
@@ -210,10 +217,11 @@ impl Surfaces {
                 let index = |i: usize| (primitive.lane(i) - row.first) as usize + place;
                 self.triangles(index, (all(normal), all(uv)), (u, v))
             }
-            Class::Sphere => {
+            Class::Sphere { mapped } => {
                 let SphereRow { sphere, to_local } = &self.spheres[place];
                 let (center, radius) = (Vector3::splat(sphere.center), R::splat(sphere.radius));
-                on_sphere((center, radius), to_local.map(Vector3::splat), org + dir.scale(t))
+                let to_local = mapped.then(|| to_local.map(Vector3::splat));
+                on_sphere((center, radius), to_local, org + dir.scale(t))
             }
             Class::Canonical => self.canonicals[place].at(org + dir.scale(t)),
         }
@@ -236,7 +244,7 @@ impl Surfaces {
                     smooth |= u32::from(normal == Interpolate::Vertices) << i;
                     mapped |= u32::from(uv == Interpolate::Vertices) << i;
                 }
-                Class::Sphere => spheres |= 1 << i,
+                Class::Sphere { .. } => spheres |= 1 << i,
                 Class::Canonical => canonicals |= 1 << i,
             }
         }
@@ -270,7 +278,7 @@ impl Surfaces {
             let center = Vector3::<R>::from_fn(|i| row(i).sphere.center);
             let radius = R::from_fn(|i| row(i).sphere.radius);
             let axes = [0, 1, 2].map(|k| Vector3::<R>::from_fn(|i| row(i).to_local[k]));
-            replace(spheres, on_sphere((center, radius), axes, point));
+            replace(spheres, on_sphere((center, radius), Some(axes), point));
         }
         let mut rest = canonicals;
         while rest != 0 {
@@ -295,7 +303,13 @@ impl Surfaces {
         for (i, corner) in corners[..R::LANES].iter_mut().enumerate() {
             *corner = self.triangles[index(i)];
         }
-        let [p0, p1, p2] = [0, 1, 2].map(|k| R::from_rows(|i| self.vertices[corners[i][k] as usize].row()));
+        let row = |i: usize, k: usize| self.vertices[corners[i][k] as usize].row();
+        let [p0, p1, p2] = if corners[1..R::LANES].iter().all(|corner| *corner == corners[0]) {
+            let splat = |row: [f32; 8]| std::array::from_fn(|n| R::splat(row[n]));
+            [splat(row(0, 0)), splat(row(0, 1)), splat(row(0, 2))]
+        } else {
+            [0, 1, 2].map(|k| R::from_rows(|i| row(i, k)))
+        };
         let position = |[x, y, z, ..]: [R; 8]| vector3(x, y, z);
         let (v0, e1, e2) = (position(p0), position(p1) - position(p0), position(p2) - position(p0));
         let n_g = e1.cross(e2).normalize_or(vector3(R::zero(), R::zero(), R::one()));
@@ -316,21 +330,21 @@ impl Surfaces {
     }
 }
 
-/// Spheres, with their poles; the point is put back onto them, so that its error no longer grows with t.
+/// Spheres, with their poles if (u, v) are asked for; the point is put back onto them, so that its error no longer grows with t.
 #[inline]
 fn on_sphere<R: Real>(
     (center, radius): (Vector3<R>, R),
-    to_local: [Vector3<R>; 3],
+    to_local: Option<[Vector3<R>; 3]>,
     point: Vector3<R>,
 ) -> Part<R> {
     let n = (point - center).normalize_or(vector3(R::zero(), R::zero(), R::one()));
-    let [x, y, z] = to_local.map(|axis| axis.dot(n));
+    let uv = to_local.map(|[x, y, z]| (turns(y.dot(n), x.dot(n)), acos(z.dot(n)) * R::splat(INV_PI)));
     Part {
         position: center + n.scale(radius),
         extent: vector3(radius, radius, radius),
         n_g: n,
         n_s: n,
-        uv: (turns(y, x), acos(z) * R::splat(INV_PI)),
+        uv: uv.unwrap_or((R::zero(), R::zero())),
     }
 }
 

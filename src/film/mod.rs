@@ -24,19 +24,19 @@ pub struct Film {
 impl Film {
     /// A black film.
     pub fn new(width: u32, height: u32, channels: &[String]) -> Self {
-        let samples = vec![0.0; width as usize * height as usize];
-        let channel = |name: &String| Channel { name: name.clone(), samples: samples.clone() };
+        let samples = || vec![0.0; width as usize * height as usize];
+        let channel = |name: &String| Channel { name: name.clone(), samples: samples() };
         Self { picture: Picture { width, height, channels: channels.iter().map(channel).collect() } }
     }
 
     /// Puts the means of a tile in its place.
     pub fn place(&mut self, tile: &Tile, total: &Sums) {
-        let width = self.picture.width as usize;
+        let (width, columns) = (self.picture.width as usize, tile.width as usize);
+        let first = tile.y as usize * width + tile.x as usize;
         for (c, channel) in self.picture.channels.iter_mut().enumerate() {
-            for pixel in 0..tile.len() {
-                let (x, y) = (pixel % tile.width as usize, pixel / tile.width as usize);
-                let at = (tile.y as usize + y) * width + tile.x as usize + x;
-                channel.samples[at] = total.mean(pixel, c);
+            let below = channel.samples[first..].chunks_mut(width);
+            for (y, row) in below.take(tile.height as usize).enumerate() {
+                total.means(c, y * columns, &mut row[..columns]);
             }
         }
     }

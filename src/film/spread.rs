@@ -36,9 +36,8 @@ impl Spread {
     /// Takes in a finished block, whose first three channels are R, G and B.
     pub(super) fn add(&mut self, block: &Sums) {
         let pixels = self.sums.len();
-        let channels = block.values.len() / pixels;
         for pixel in 0..pixels {
-            let [r, g, b] = [0, 1, 2].map(|c| block.values[pixel * channels + c]);
+            let [r, g, b] = [0, 1, 2].map(|c| block.values[c * pixels + pixel]);
             let count = block.counts[pixel].max(1) as f32;
             let mean = (0.2126 * r + 0.7152 * g + 0.0722 * b) / count;
             self.sums[pixel] += mean;
@@ -73,8 +72,8 @@ mod tests {
         let mut spread = Spread::new(1);
         for &value in blocks {
             let mut sums = Sums::new(1, 3);
-            sums.add(0, 1.0, &[value; 3]);
-            sums.add(0, 1.0, &[value; 3]);
+            sums.add(0, 1.0, |_| value);
+            sums.add(0, 1.0, |_| value);
             spread.add(&sums);
         }
         spread

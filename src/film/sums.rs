@@ -14,13 +14,15 @@
 //! pieces: samples may be rendered in several goes, on several machines, and end in the same bits. Besides,
 //! rounding grows like the logarithm of the number of samples, not like the number.
 
+use crate::simd::{LANES, f32x8};
+
 /// Samples that are added one after the other.
 pub const BLOCK: u32 = 16;
 
 /// Sums over the pixels of a tile, of some samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sums {
-    /// Pixel after pixel, in each channel after channel.
+    /// Channel after channel, in each pixel after pixel.
     pub values: Vec<f32>,
     /// What the samples of each pixel count together.
     pub weights: Vec<f32>,
@@ -41,15 +43,30 @@ impl Sums {
         self
     }
 
-    /// Adds a sample of a pixel: a value for each channel.
     #[inline]
-    pub(super) fn add(&mut self, pixel: usize, weight: f32, values: &[f32]) {
-        let sums = &mut self.values[pixel * values.len()..][..values.len()];
-        for (sum, value) in sums.iter_mut().zip(values) {
-            *sum += value * weight;
+    pub(super) fn add(&mut self, pixel: usize, weight: f32, value: impl Fn(usize) -> f32) {
+        let pixels = self.counts.len();
+        for (c, plane) in self.values.chunks_exact_mut(pixels).enumerate() {
+            plane[pixel] += value(c) * weight;
         }
         self.weights[pixel] += weight;
         self.counts[pixel] += 1;
+    }
+
+    /// The same for eight neighbours from `first` on: `values` are channel by channel.
+    #[inline]
+    pub(super) fn add_eight(&mut self, first: usize, weights: f32x8, values: &[f32x8]) {
+        let pixels = self.counts.len();
+        let add = |numbers: &mut [f32], more: f32x8| {
+            if let Some(eight) = numbers[first..].first_chunk_mut::<LANES>() {
+                *eight = (f32x8::new(*eight) + more).to_array();
+            }
+        };
+        for (plane, &value) in self.values.chunks_exact_mut(pixels).zip(values) {
+            add(plane, value * weights);
+        }
+        add(&mut self.weights, weights);
+        self.counts[first..first + LANES].iter_mut().for_each(|count| *count += 1);
     }
 
     /// These and later ones.
@@ -65,18 +82,25 @@ impl Sums {
         }
     }
 
-    /// The mean of a pixel's samples, 0 where it has none.
+    /// Means of a channel's samples from the pixel `first` on, 0 for pixels that have none.
     ///
     /// Divided by their weights, so that what is the same everywhere stays the same; but a few samples of
     /// both signs may weigh nothing together, and are then divided by their number.
-    pub fn mean(&self, pixel: usize, channel: usize) -> f32 {
-        let channels = self.values.len() / self.counts.len();
-        let sum = self.values[pixel * channels + channel];
-        match (self.counts[pixel], self.weights[pixel]) {
-            (0, _) => 0.0,
-            (_, weight) if weight > 0.0 => sum / weight,
-            (count, _) => sum / count as f32,
+    pub fn means(&self, channel: usize, first: usize, out: &mut [f32]) {
+        let pixels = first..first + out.len();
+        let sums = &self.values[channel * self.counts.len()..][pixels.clone()];
+        let weighed = self.weights[pixels.clone()].iter().zip(&self.counts[pixels]);
+        for ((mean, &sum), (&weight, &count)) in out.iter_mut().zip(sums).zip(weighed) {
+            let quotient = sum / if weight > 0.0 { weight } else { count as f32 };
+            *mean = if count == 0 { 0.0 } else { quotient };
         }
+    }
+
+    #[cfg(test)]
+    pub(super) fn mean(&self, pixel: usize, channel: usize) -> f32 {
+        let mut mean = [0.0];
+        self.means(channel, pixel, &mut mean);
+        mean[0]
     }
 }
 
@@ -121,7 +145,7 @@ mod tests {
 
     fn block(index: u32) -> Node {
         let mut sums = Sums::new(1, 1);
-        sums.add(0, 1.0, &[1.0 / (index + 1) as f32]);
+        sums.add(0, 1.0, |_| 1.0 / (index + 1) as f32);
         Node { level: 0, index, sums }
     }
 

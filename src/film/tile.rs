@@ -1,9 +1,10 @@
 //! A rectangle of pixels, and what its samples have brought so far.
 
-use std::ops::Range;
+use std::{borrow::Cow, ops::Range};
 
 use super::spread::Spread;
 use super::sums::{self, BLOCK, Node, Sums};
+use crate::simd::{LANES, Real, f32x8};
 
 /// The greatest value of a sample: no sum of as many as can be counted overflows. Whether a sample is kept
 /// must not depend on those before it, which may be on another machine.
@@ -83,16 +84,28 @@ impl TileFilm {
         self.open.values.len() / self.pixels()
     }
 
-    /// Adds to a pixel its next sample, of a weight: a value for each channel. Each pixel gets one
+    /// Adds to a pixel its next sample, of a weight: `value(c)` for each channel c. Each pixel gets one
     /// before [`finish_sample`](Self::finish_sample).
     #[inline]
-    pub fn add(&mut self, pixel: usize, weight: f32, values: &[f32]) {
-        // All are asked, whatever the first says: eight comparisons are one.
-        if !values.iter().fold(true, |kept, value| kept & ((value * weight).abs() <= GREATEST)) {
+    pub fn add(&mut self, pixel: usize, weight: f32, value: impl Fn(usize) -> f32) {
+        if !(0..self.channels()).all(|c| (value(c) * weight).abs() <= GREATEST) {
             self.keep_out(pixel as u32);
             return;
         }
-        self.open.add(pixel, weight, values);
+        self.open.add(pixel, weight, value);
+    }
+
+    /// The same for eight neighbours from `first` on: `values` are channel by channel.
+    #[inline]
+    pub fn add_eight(&mut self, first: usize, weights: f32x8, values: &[f32x8]) {
+        let kept = |value: &f32x8| (*value * weights).abs().le(f32x8::splat(GREATEST)).all();
+        if values.iter().all(kept) {
+            self.open.add_eight(first, weights, values);
+        } else {
+            for i in 0..LANES {
+                self.add(first + i, weights.lane(i), |c| values[c].lane(i));
+            }
+        }
     }
 
     fn keep_out(&mut self, pixel: u32) {
@@ -137,12 +150,15 @@ impl TileFilm {
     }
 
     /// All samples together.
-    pub fn total(&self) -> Sums {
+    pub fn total(&self) -> Cow<'_, Sums> {
+        if self.nodes.is_empty() {
+            return Cow::Borrowed(&self.open);
+        }
         let mut parts = self.nodes.iter().map(|node| &node.sums).chain([&self.open]);
         // There is always the open block.
         let mut total = parts.next().unwrap_or(&self.open).clone();
         parts.for_each(|part| total.absorb(part));
-        total
+        Cow::Owned(total)
     }
 
     /// What contradicts itself in a film that was not made here, if anything does.
@@ -179,7 +195,7 @@ mod tests {
     fn filled(first: u32, values: impl IntoIterator<Item = f32>) -> TileFilm {
         let mut film = TileFilm::new(1, 1, first);
         for value in values {
-            film.add(0, 1.0, &[value]);
+            film.add(0, 1.0, |_| value);
             film.finish_sample();
         }
         film
@@ -190,6 +206,28 @@ mod tests {
         let film = filled(0, [1.0, 3e38, 3.0, -1e29, 2e28]);
         assert_eq!((film.invalid, film.first_invalid), (2, Some((0, 1))));
         assert_eq!(film.total().counts, [3]);
+    }
+
+    #[test]
+    fn eight_pixels_at_once_are_eight_one_by_one() {
+        let (mut eights, mut ones) = (TileFilm::new(16, 3, 0), TileFilm::new(16, 3, 0));
+        for sample in 0..20 {
+            let value = |pixel: usize, channel: usize| match (sample, pixel, channel) {
+                (3, 11, 2) => f32::NAN,
+                (7, 2, 0) => f32::MAX,
+                _ => noise((sample * 16 + pixel) as u32 * 3 + channel as u32),
+            };
+            let weight = |pixel: usize| if pixel == 5 { -0.5 } else { 0.75 + pixel as f32 };
+            for first in [0, 8] {
+                let values: Vec<f32x8> = (0..3).map(|c| f32x8::from_fn(|i| value(first + i, c))).collect();
+                eights.add_eight(first, f32x8::from_fn(|i| weight(first + i)), &values);
+            }
+            (0..16).for_each(|pixel| ones.add(pixel, weight(pixel), |c| value(pixel, c)));
+            eights.finish_sample();
+            ones.finish_sample();
+        }
+        assert_eq!((ones.invalid, ones.first_invalid), (2, Some((2, 7))));
+        assert_eq!(eights, ones);
     }
 
     fn noise(sample: u32) -> f32 {
@@ -215,8 +253,8 @@ mod tests {
     fn invalid_samples_are_counted_and_kept_out() {
         let mut film = TileFilm::new(2, 1, 0);
         let mut both = |left: f32, right: f32| {
-            film.add(0, 1.0, &[left]);
-            film.add(1, 1.0, &[right]);
+            film.add(0, 1.0, |_| left);
+            film.add(1, 1.0, |_| right);
             film.finish_sample();
         };
         both(1.0, 2.0);
@@ -231,13 +269,13 @@ mod tests {
     fn weights_of_both_signs_keep_what_is_the_same_everywhere() {
         let mut film = TileFilm::new(1, 1, 0);
         for weight in [1.0, -1.0, 1.0, 1.0] {
-            film.add(0, weight, &[0.75]);
+            film.add(0, weight, |_| 0.75);
             film.finish_sample();
         }
         assert_eq!(film.total().mean(0, 0), 0.75);
         let mut none = TileFilm::new(1, 1, 0);
-        none.add(0, 1.0, &[3.0]);
-        none.add(0, -1.0, &[1.0]);
+        none.add(0, 1.0, |_| 3.0);
+        none.add(0, -1.0, |_| 1.0);
         assert_eq!(none.total().mean(0, 0), 1.0);
     }
 

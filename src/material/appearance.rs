@@ -136,13 +136,21 @@ impl<R: Real> View<R> {
 
 impl<R: Real> Point<R> {
     /// A layer's model where the layer's steps lead.
-    #[inline]
+    // Models are large: `bsdf` is called where its result is to be, and nothing is copied.
+    #[inline(always)]
     pub(super) fn place<'t>(
         &self,
-        bsdf: Bsdf<'t, R>,
+        bsdf: impl FnOnce() -> Bsdf<'t, R>,
         layer: &Layer,
         textures: &TextureTable,
     ) -> Placed<'t, R> {
+        let (weight, view) = self.view(layer, textures);
+        Placed { bsdf: bsdf(), weight, view, wo: view.to_model(self.wo) }
+    }
+
+    /// A layer's weight, and how its model sees directions.
+    #[inline]
+    fn view(&self, layer: &Layer, textures: &TextureTable) -> (R, View<R>) {
         let mut weight = R::one();
         for factor in &layer.factors {
             let value = textures.fetch_number::<R>(factor.texture, self.uv);
@@ -178,7 +186,7 @@ impl<R: Real> Point<R> {
                 }
             }
         }
-        Placed { bsdf, weight, view, wo: view.to_model(self.wo) }
+        (weight, view)
     }
 }
 
@@ -206,19 +214,21 @@ impl<R: Real> Placed<'_, R> {
 
     #[inline]
     fn branches(&self) -> [Branch<R>; 2] {
-        self.bsdf.branches(self.wo).map(|branch| {
+        let at_surface = |branch: Branch<R>| {
             let wi = self.view.to_surface(branch.wi);
             let valid = match self.view.agrees(wi, branch.wi) {
                 None => branch.valid,
                 Some(lanes) => branch.valid & lanes,
             };
             Branch { wi, weight: self.view.shadow(wi, branch.weight), valid }
-        })
+        };
+        let [reflection, refraction] = self.bsdf.branches(self.wo);
+        [at_surface(reflection), at_surface(refraction)]
     }
 }
 
 impl<'t, R: Real> Appearance<'t, R> {
-    #[inline]
+    #[inline(always)]
     pub(super) fn new(first: Placed<'t, R>, others: Vec<Placed<'t, R>>) -> Self {
         Self { first, others }
     }

@@ -149,7 +149,7 @@ impl MaterialTable {
     }
 
     /// What a material looks like at some points.
-    #[inline]
+    #[inline(always)]
     pub fn appearance<'t, R: Real>(
         &'t self,
         id: MaterialId,
@@ -157,9 +157,9 @@ impl MaterialTable {
         point: &Point<R>,
     ) -> Appearance<'t, R> {
         let MaterialRow { first, others } = &self.rows[id.0 as usize];
-        let fetch = |layer: &Layer| {
-            let bsdf = layer.model.fetch(&self.tables, textures, point.uv);
-            point.place(bsdf, layer, textures)
+        let fetch = |layer| {
+            let model = |layer: &Layer| layer.model.fetch(&self.tables, textures, point.uv);
+            point.place(|| model(layer), layer, textures)
         };
         Appearance::new(fetch(first), others.iter().map(fetch).collect())
     }

@@ -9,8 +9,8 @@ use crate::simd::{Bits, LANES, Real, f32x8, u32x8};
 
 /// A tile's pixels, in the order of its first paths.
 pub(super) struct Pixels {
-    /// Their places in the tile, row by row.
-    pub(super) places: Vec<u32>,
+    /// The paths of the tile's pixels, row by row.
+    pub(super) paths: Vec<u32>,
     /// Column and row in the film, and the [`PathKey`]s, eight at a time; the last is repeated to fill a packet.
     pub(super) packets: Vec<(u32x8, u32x8, u32x8)>,
 }
@@ -23,10 +23,11 @@ impl Pixels {
             let (x, y) = (u32x8::from_fn(|i| tile.x + pixel(i).0), u32x8::from_fn(|i| tile.y + pixel(i).1));
             (x, y, keys::<f32x8>(scene, x, y))
         };
-        Self {
-            places: order.iter().map(|&(x, y)| y * tile.width + x).collect(),
-            packets: order.chunks(LANES).map(packet).collect(),
+        let mut paths = vec![0; order.len()];
+        for (path, &(x, y)) in (0..).zip(&order) {
+            paths[(y * tile.width + x) as usize] = path;
         }
+        Self { paths, packets: order.chunks(LANES).map(packet).collect() }
     }
 }
 

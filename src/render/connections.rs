@@ -4,13 +4,14 @@ use bumpalo::{Bump, collections::Vec as BumpVec};
 
 use super::rows::reserve;
 use crate::geometry::RayLanes;
-use crate::simd::{LANES, Real, Vec3x8, compress, f32x8, u32x8, vector3};
+use crate::simd::{LANES, Real, Vec3x8, compress, f32x8, transpose, u32x8, vector3};
 
 /// Columns in the order in which the rays were asked for.
 pub(super) struct Connections<'a> {
     /// Origin, direction, end.
     rays: [BumpVec<'a, f32>; 7],
-    light: [BumpVec<'a, f32>; 3],
+    /// Red, green and blue, and nothing.
+    light: BumpVec<'a, [f32; 4]>,
     /// Slot of the vertex.
     slot: BumpVec<'a, u32>,
     pub(super) len: usize,
@@ -20,7 +21,7 @@ impl<'a> Connections<'a> {
     pub(super) fn new(arena: &'a Bump) -> Self {
         Self {
             rays: std::array::from_fn(|_| BumpVec::new_in(arena)),
-            light: std::array::from_fn(|_| BumpVec::new_in(arena)),
+            light: BumpVec::new_in(arena),
             slot: BumpVec::new_in(arena),
             len: 0,
         }
@@ -30,9 +31,10 @@ impl<'a> Connections<'a> {
     pub(super) fn clear(&mut self, most: usize) {
         self.len = 0;
         // A packet is written whole, wherever it begins.
-        for column in self.rays.iter_mut().chain(&mut self.light) {
+        for column in &mut self.rays {
             reserve(column, most + LANES, 0.0);
         }
+        reserve(&mut self.light, most + LANES, [0.0; 4]);
         reserve(&mut self.slot, most + LANES, 0);
     }
 
@@ -46,10 +48,10 @@ impl<'a> Connections<'a> {
         slots: u32x8,
     ) {
         let lanes = lanes as u8;
-        let Self { rays: [ox, oy, oz, dx, dy, dz, end], light: [r, g, b], slot, len } = self;
+        let Self { rays: [ox, oy, oz, dx, dy, dz, end], light, slot, len } = self;
+        let chosen = |values: f32x8| f32x8::from_bits(compress(values.to_bits(), lanes));
         let append = |column: &mut [f32], values: f32x8| {
-            let values = f32x8::from_bits(compress(values.to_bits(), lanes));
-            column[*len..*len + LANES].copy_from_slice(&values.to_array());
+            column[*len..*len + LANES].copy_from_slice(&chosen(values).to_array());
         };
         append(ox, org.x);
         append(oy, org.y);
@@ -58,9 +60,12 @@ impl<'a> Connections<'a> {
         append(dy, dir.y);
         append(dz, dir.z);
         append(end, t_far);
-        append(r, radiance.x);
-        append(g, radiance.y);
-        append(b, radiance.z);
+        let (zero, [r, g, b]) = (f32x8::zero(), [radiance.x, radiance.y, radiance.z].map(chosen));
+        let rows = transpose([r, g, b, zero, zero, zero, zero, zero]);
+        for (light, row) in light[*len..*len + LANES].iter_mut().zip(rows) {
+            let [r, g, b, nothing, ..] = row.to_array();
+            *light = [r, g, b, nothing];
+        }
         slot[*len..*len + LANES].copy_from_slice(&compress(slots, lanes).to_array());
         *len += lanes.count_ones() as usize;
     }
@@ -80,17 +85,13 @@ impl<'a> Connections<'a> {
     /// What a ray would have brought is nothing.
     #[inline]
     pub(super) fn block(&mut self, ray: usize) {
-        self.light.iter_mut().for_each(|channel| channel[ray] = 0.0);
+        self.light[ray] = [0.0; 4];
     }
 
-    /// Calls `add` with slot, channel and light, each slot's rays in the order in which they were asked for.
+    /// Slots and light, each slot's rays in the order in which they were asked for.
     #[inline]
-    pub(super) fn for_each(&self, mut add: impl FnMut(usize, usize, f32)) {
-        for (channel, light) in self.light.iter().enumerate() {
-            for (&slot, &light) in self.slot[..self.len].iter().zip(light.iter()) {
-                add(slot as usize, channel, light);
-            }
-        }
+    pub(super) fn iter(&self) -> impl Iterator<Item = (usize, &[f32; 4])> {
+        self.slot[..self.len].iter().map(|&slot| slot as usize).zip(&self.light)
     }
 }
 
@@ -116,12 +117,8 @@ mod tests {
         assert_eq!(rays.dir.lane(5), glam::Vec3::splat(4.0));
         connections.block(1);
         connections.block(4);
-        let mut arrived = Vec::new();
-        connections.for_each(|slot, channel, light| {
-            if channel == 2 {
-                arrived.push((slot, light));
-            }
-        });
+        let arrived: Vec<_> = connections.iter().map(|(slot, light)| (slot, light[2])).collect();
         assert_eq!(arrived, [(3, 2.0), (3, 0.0), (3, 7.0), (8, 0.0), (3, 0.0), (3, 20.0)]);
+        assert!(connections.iter().all(|(_, light)| light[..3] == [light[0]; 3] && light[3] == 0.0));
     }
 }

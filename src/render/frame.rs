@@ -254,9 +254,10 @@ impl Frame {
     pub fn tile(&self, index: usize, seen: u32) -> Option<TileView> {
         let cell = &self.cells[index];
         let (samples, total) = {
-            let film = &lock(&cell.state).film;
+            let state = lock(&cell.state);
+            let film = &state.film;
             let samples = film.samples.len() as u32;
-            (samples != seen).then(|| (samples, film.total()))?
+            (samples != seen).then(|| (samples, film.total().into_owned()))?
         };
         let Tile { x, y, width, height } = cell.tile;
         let mut film = Film::new(width, height, &self.channels);

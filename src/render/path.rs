@@ -53,7 +53,8 @@ impl Integrator for PathTracer {
             true => path.random(PAIRS, 2),
             false => unused,
         };
-        let (mut lanes, ray, mut next) = vertex.scatter(lobe, path.random(PAIRS, 1));
+        let direction = if vertex.is_smooth() { path.random(PAIRS, 1) } else { unused };
+        let (mut lanes, ray, mut next) = vertex.scatter(lobe, direction);
         if next.depth + 1 >= self.max_depth {
             lanes = lanes & scene.sight.may_find(ray);
         }

@@ -14,10 +14,14 @@ impl Rendered {
     /// Alpha takes a render of camera rays, on the current rayon pool.
     #[must_use]
     pub fn formatted(mut self, scene: &Scene, settings: &Settings) -> Self {
-        let Some(luminance) = luminance(&self.picture) else { return self };
-        let channels = &mut self.picture.channels;
         let format = scene.film.format;
-        if matches!(format, PixelFormat::Luminance | PixelFormat::LuminanceAlpha) {
+        if !["R", "G", "B"].iter().all(|name| self.picture.plane(name).is_some()) {
+            return self;
+        }
+        let grey = matches!(format, PixelFormat::Luminance | PixelFormat::LuminanceAlpha);
+        let luminance = if grey { luminance(&self.picture) } else { None };
+        let channels = &mut self.picture.channels;
+        if let Some(luminance) = luminance {
             channels.retain(|channel| !["R", "G", "B"].contains(&channel.name.as_str()));
             channels.insert(0, Channel { name: "Y".into(), samples: luminance });
         }

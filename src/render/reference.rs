@@ -35,7 +35,7 @@ pub(super) fn render<I: Integrator>(scene: &Scene, integrator: &I, tile: &Tile, 
         let pixels: Vec<_> = (0..tile.len() as u32).map(pixel).collect();
         visit.finish(statistics, |film| {
             for (pixel, (sums, weight)) in pixels.iter().enumerate() {
-                film.add(pixel, *weight, sums);
+                film.add(pixel, *weight, |c| sums[c]);
             }
         });
     }

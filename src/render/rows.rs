@@ -7,7 +7,7 @@ use bumpalo::{Bump, collections::Vec as BumpVec};
 
 use super::integrator::Path;
 use crate::geometry::{Hit, PrimitiveId, RayLanes};
-use crate::simd::{LANES, Real, Vec3x8, f32x8, transpose, u32x8, vector3};
+use crate::simd::{Bits, LANES, Real, Vec3x8, compress, f32x8, transpose, u32x8, vector3};
 
 /// Eight numbers a slot. Lengths are padded to whole packets.
 pub(super) type Rows<'a> = BumpVec<'a, f32x8>;
@@ -51,28 +51,32 @@ pub(super) struct Packet {
     pub(super) pixel: u32x8,
 }
 
-/// Paths in flight.
+/// Paths in flight. A path that ends leaves its rows where they are: those that go on keep theirs, and are named
+/// in order by their places.
 pub(super) struct Paths<'a> {
     /// Origin, direction, end; key.
     rays: Rows<'a>,
     /// β, density, η²; pixel.
     worth: Rows<'a>,
+    /// For each slot the place of its rows.
+    places: BumpVec<'a, u32>,
     /// Slots in use.
     pub(super) len: usize,
 }
 
 impl<'a> Paths<'a> {
     pub(super) fn new(arena: &'a Bump) -> Self {
-        Self { rays: BumpVec::new_in(arena), worth: BumpVec::new_in(arena), len: 0 }
+        let rows = || BumpVec::new_in(arena);
+        Self { rays: rows(), worth: rows(), places: BumpVec::new_in(arena), len: 0 }
     }
 
-    pub(super) fn resize(&mut self, len: usize) {
-        self.len = len;
+    /// Makes room for so many paths.
+    pub(super) fn reserve(&mut self, len: usize) {
         reserve(&mut self.rays, len, f32x8::zero());
         reserve(&mut self.worth, len, f32x8::zero());
     }
 
-    /// Writes the first lanes of a packet to the slots `at`.
+    /// Writes the first lanes of a packet to the places `at`.
     #[inline]
     pub(super) fn store(&mut self, at: &[u32], packet: &Packet) {
         let Packet { org, dir, t_far, path, pixel } = packet;
@@ -85,8 +89,9 @@ impl<'a> Paths<'a> {
     /// The paths in some slots.
     #[inline]
     pub(super) fn packet(&self, slots: &[u32; LANES], depth: u32, sample: u32) -> Packet {
-        let [ox, oy, oz, dx, dy, dz, t_far, key] = gather(&self.rays, slots);
-        let [r, g, b, pdf, eta2, pixel, ..] = gather(&self.worth, slots);
+        let places = std::array::from_fn(|i| self.places[slots[i] as usize]);
+        let [ox, oy, oz, dx, dy, dz, t_far, key] = gather(&self.rays, &places);
+        let [r, g, b, pdf, eta2, pixel, ..] = gather(&self.worth, &places);
         Packet {
             org: vector3(ox, oy, oz),
             dir: vector3(dx, dy, dz),
@@ -99,38 +104,45 @@ impl<'a> Paths<'a> {
     /// The rays of the packet that starts at a slot.
     #[inline]
     pub(super) fn rays(&self, first: usize) -> RayLanes<f32x8> {
-        let rows = self.rays[first..].first_chunk().copied().unwrap_or_default();
-        let [ox, oy, oz, dx, dy, dz, t_far, _] = transpose(rows);
+        let places = self.places[first..].first_chunk().copied().unwrap_or_default();
+        let [ox, oy, oz, dx, dy, dz, t_far, _] = gather(&self.rays, &places);
         RayLanes::new(vector3(ox, oy, oz), vector3(dx, dy, dz), f32x8::zero(), t_far)
     }
 
     /// The place of a path's pixel.
     #[inline]
     pub(super) fn pixel(&self, slot: usize) -> usize {
-        self.worth[slot].lane(5).to_bits() as usize
+        self.worth[self.places[slot] as usize].lane(5).to_bits() as usize
     }
 
-    /// Takes those paths of `from` that are alive, in order.
-    pub(super) fn take(&mut self, from: &Self, alive: &[bool]) {
-        self.resize(from.len);
-        let mut kept = 0;
-        for (packet, alive) in alive[..from.len.next_multiple_of(LANES)].chunks_exact(LANES).enumerate() {
-            if alive == [false; LANES] {
-                continue;
-            }
-            for (lane, &alive) in alive.iter().enumerate() {
-                let slot = packet * LANES + lane;
-                // Written before it is known whether it stays: nobody guesses a branch.
-                (self.rays[kept], self.worth[kept]) = (from.rays[slot], from.worth[slot]);
-                kept += usize::from(alive);
-            }
+    /// The paths at the places where `alive` says so are in flight, in order. It has whole packets.
+    pub(super) fn keep(&mut self, alive: &[bool]) {
+        // A packet is written whole, wherever it begins, and the last one is filled up.
+        reserve(&mut self.places, alive.len() + LANES, 0);
+        self.len = 0;
+        let mut places = u32x8::from_fn(|i| i as u32);
+        for alive in alive.as_chunks::<LANES>().0 {
+            let lanes = bits(alive);
+            let kept = compress(places, lanes);
+            self.places[self.len..self.len + LANES].copy_from_slice(&kept.to_array());
+            self.len += lanes.count_ones() as usize;
+            places = places.wrapping_add(u32x8::splat(LANES as u32));
         }
-        self.len = kept;
+        let last = self.len.checked_sub(1).map_or(0, |last| self.places[last]);
+        self.places[self.len..self.len + LANES].fill(last);
     }
 }
 
-/// What the paths have hit.
-pub(super) struct Hits<'a>(Rows<'a>);
+/// Truth values as bits: the first is bit 0.
+#[inline]
+fn bits(values: &[bool; LANES]) -> u8 {
+    // Each byte is moved to the bit of its number in the highest byte, and no two meet on the way.
+    let bytes = u64::from_le_bytes(values.map(u8::from));
+    (bytes.wrapping_mul(0x0102_0408_1020_4080) >> 56) as u8
+}
+
+/// What the paths have hit: t, u, v and the primitive, a row a slot.
+pub(super) struct Hits<'a>(BumpVec<'a, [f32; 4]>);
 
 impl<'a> Hits<'a> {
     pub(super) fn new(arena: &'a Bump) -> Self {
@@ -138,26 +150,29 @@ impl<'a> Hits<'a> {
     }
 
     pub(super) fn resize(&mut self, len: usize) {
-        reserve(&mut self.0, len, f32x8::zero());
+        reserve(&mut self.0, len, [0.0; 4]);
     }
 
     #[inline]
     pub(super) fn set(&mut self, slot: usize, hit: &Hit) {
-        let primitive = f32::from_bits(hit.primitive.0);
-        self.0[slot] = f32x8::new([hit.t, hit.u, hit.v, primitive, 0.0, 0.0, 0.0, 0.0]);
+        self.0[slot] = [hit.t, hit.u, hit.v, f32::from_bits(hit.primitive.0)];
     }
 
     /// (primitive, u).
     #[inline]
     pub(super) fn primitive(&self, slot: usize) -> (PrimitiveId, f32) {
-        let row = &self.0[slot];
-        (PrimitiveId(row.lane(3).to_bits()), row.lane(1))
+        let [_, u, _, primitive] = self.0[slot];
+        (PrimitiveId(primitive.to_bits()), u)
     }
 
     /// ((t, u, v), primitives) of some slots.
     #[inline]
     pub(super) fn packet(&self, slots: &[u32; LANES]) -> ((f32x8, f32x8, f32x8), u32x8) {
-        let [t, u, v, primitive, ..] = gather(&self.0, slots);
+        let row = |i: usize| {
+            let [t, u, v, primitive] = self.0[slots[i] as usize];
+            f32x8::new([t, u, v, primitive, 0.0, 0.0, 0.0, 0.0])
+        };
+        let [t, u, v, primitive, ..] = transpose(std::array::from_fn(row));
         ((t, u, v), primitive.to_bits())
     }
 }
@@ -165,7 +180,6 @@ impl<'a> Hits<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simd::Bits;
 
     /// Numbers that say whose they are.
     fn packet(from: u32) -> Packet {
@@ -191,10 +205,11 @@ mod tests {
     fn paths_come_back_from_where_they_were_put() {
         let arena = Bump::new();
         let mut paths = Paths::new(&arena);
-        paths.resize(21);
+        paths.reserve(21);
         let slots = [20, 3, 7, 0, 11, 12, 5, 1];
         paths.store(&slots, &packet(1));
         paths.store(&[2, 4], &packet(50));
+        paths.keep(&[true; 24]);
         let same = paths.packet(&slots, 3, 5);
         assert_eq!(format!("{:?}", same.path), format!("{:?}", packet(1).path));
         assert_eq!(same.org.lane(1), packet(1).org.lane(1));
@@ -209,21 +224,32 @@ mod tests {
     #[test]
     fn paths_that_are_alive_move_up_in_order() {
         let arena = Bump::new();
-        let (mut from, mut to) = (Paths::new(&arena), Paths::new(&arena));
-        from.resize(20);
+        let mut paths = Paths::new(&arena);
+        paths.reserve(20);
         for first in [0, 8] {
-            from.store(&std::array::from_fn::<u32, 8, _>(|i| first + i as u32), &packet(first));
+            paths.store(&std::array::from_fn::<u32, 8, _>(|i| first + i as u32), &packet(first));
         }
-        from.store(&[16, 17, 18, 19], &packet(16));
+        paths.store(&[16, 17, 18, 19], &packet(16));
         let mut alive = [false; 24];
         for slot in [1, 6, 17, 19] {
             alive[slot] = true;
         }
-        to.take(&from, &alive);
-        assert_eq!(to.len, 4);
-        let places: Vec<usize> = (0..4).map(|slot| to.pixel(slot) - 0x7f80_0001).collect();
+        paths.keep(&alive);
+        assert_eq!(paths.len, 4);
+        let places: Vec<usize> = (0..4).map(|slot| paths.pixel(slot) - 0x7f80_0001).collect();
         assert_eq!(places, [1, 6, 17, 19]);
-        assert_eq!(to.rays(0).org.lane(3), from.rays(16).org.lane(3));
+        // Lanes behind the last hold it, too.
+        let org = [1.0, 6.0, 17.0, 19.0, 19.0, 19.0, 19.0, 19.0].map(|slot| 100.0 * slot);
+        assert_eq!(paths.rays(0).org.x.to_array(), org);
+        paths.keep(&[false; 24]);
+        assert_eq!(paths.len, 0);
+    }
+
+    #[test]
+    fn truth_values_are_bits_in_order() {
+        for expected in 0..=u8::MAX {
+            assert_eq!(bits(&std::array::from_fn(|i| expected >> i & 1 != 0)), expected);
+        }
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::connections::Connections;
 use super::rows::{Hits, Paths};
 use super::statistics::LaneUse;
-use crate::bvh::{Stream, Tracer, Way};
+use crate::bvh::{Stream, Tracer};
 use crate::compile::Scene;
 use crate::geometry::{Hit, Rayx8};
 use crate::simd::Mask8;
@@ -59,13 +59,13 @@ pub(super) fn closest<'a>(
     tracer: &mut Tracer,
 ) -> LaneUse {
     hits.resize(paths.len);
-    scene.trace::<false, _, _>(&mut Nearest { paths, hits }, Way::Chosen, tracer);
+    scene.trace::<false, _, _>(&mut Nearest { paths, hits }, scene.way(), tracer);
     LaneUse::of_packets(paths.len)
 }
 
 /// Takes the light from connections that anything blocks.
 pub(super) fn occluded(scene: &Scene, connections: &mut Connections, tracer: &mut Tracer) -> LaneUse {
     let len = connections.len;
-    scene.trace::<true, _, _>(&mut Blocked(connections), Way::Chosen, tracer);
+    scene.trace::<true, _, _>(&mut Blocked(connections), scene.way(), tracer);
     LaneUse::of_packets(len)
 }

@@ -4,8 +4,8 @@ use super::departure::{Connection, Departure, distinct};
 use super::integrator::{Line, Path};
 use crate::compile::{Scene, Surface};
 use crate::light::{Light, LightId, SurfacePoint, power_heuristic};
-use crate::material::{Appearance, MaterialId, Point};
-use crate::simd::{Real, Vector3};
+use crate::material::{Appearance, Branch, MaterialId, Point};
+use crate::simd::{Bits, Mask, Real, Vector3};
 
 /// Points where paths have arrived, all of one material.
 #[derive(Clone, Debug)]
@@ -51,7 +51,7 @@ impl Sampled {
 
 impl<'s, R: Real> Vertex<'s, R> {
     /// The vertices where rays (org, dir) met `primitive` at (t, u, v).
-    #[inline]
+    #[inline(always)]
     pub(super) fn new(
         scene: &'s Scene,
         path: Path<R>,
@@ -122,6 +122,12 @@ impl<'s, R: Real> Vertex<'s, R> {
         sample.weight.only(sample.valid)
     }
 
+    /// Is there anything but delta lobes? If not, [`scatter`](Self::scatter) does not look at its pair of numbers.
+    #[inline]
+    pub(super) fn is_smooth(&self) -> bool {
+        self.appearance.is_smooth()
+    }
+
     /// Is there a delta lobe?
     #[inline]
     pub(super) fn is_split(&self) -> bool {
@@ -131,12 +137,14 @@ impl<'s, R: Real> Vertex<'s, R> {
     /// The delta lobes as rays that go on: reflection, refraction.
     #[inline]
     pub(super) fn branches(&self) -> [Continuation<R>; 2] {
-        self.appearance.branches().map(|branch| {
+        let follow = |branch: Branch<R>| {
             let beta = self.path.beta * branch.weight;
             let lanes = branch.valid & beta.max_element().gt(R::zero());
             let path = Path { beta, depth: self.path.depth + 1, ..self.path };
             (lanes, self.leave(self.surface.frame.to_world(branch.wi)), path)
-        })
+        };
+        let [reflection, refraction] = self.appearance.branches();
+        [follow(reflection), follow(refraction)]
     }
 
     /// Light that the surface itself sends along the ray, times `beta`. Where the ray was drawn with a
@@ -144,6 +152,9 @@ impl<'s, R: Real> Vertex<'s, R> {
     #[inline]
     pub(super) fn emitted(&self, scene: &Scene, sampled: Sampled) -> Vector3<R> {
         let mut total = Vector3::zero();
+        if (!self.surface.light.equal(R::Bits::splat(LightId::NONE.0))).none() {
+            return total;
+        }
         for (light, lanes) in distinct::<R>(self.surface.light) {
             let Some(Light::Area(area)) = scene.lights.get(light as usize) else {
                 continue;

@@ -20,10 +20,10 @@ use super::trace;
 use super::vertex::Vertex;
 use crate::bvh::Tracer;
 use crate::compile::Scene;
-use crate::film::Tile;
+use crate::film::{Tile, TileFilm};
 use crate::geometry::PrimitiveId;
 use crate::material::MaterialId;
-use crate::simd::{Bits, LANES, Mask, Mask8, Real, Vec3x8, f32x8, u32x8};
+use crate::simd::{Bits, LANES, Mask, Mask8, Real, Vec3x8, f32x8, transpose, u32x8};
 
 /// What one thread needs to render tiles, one after the other.
 pub(super) struct Wavefront<'a, I> {
@@ -40,11 +40,14 @@ pub(super) struct Wavefront<'a, I> {
     keys: BumpVec<'a, u32>,
     sorter: Sorter<'a>,
     out: Outputs<'a>,
-    /// For each pixel what its sample counts.
-    weights: BumpVec<'a, f32x8>,
-    /// What a pixel's paths have brought: all channels, in so many quads a pixel.
+    /// What the sample of each pixel counts, in the order of the first paths.
+    weights: BumpVec<'a, f32>,
+    /// What a pixel's paths have brought, four channels at a time, pixel after pixel.
     sums: BumpVec<'a, Quad>,
+    /// In a pixel of `sums`.
     quads: usize,
+    /// Eight pixels' channels, one after the other.
+    columns: BumpVec<'a, f32x8>,
 }
 
 /// What the groups of a round have said, by slot.
@@ -87,6 +90,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             weights: BumpVec::new_in(arena),
             sums: BumpVec::new_in(arena),
             quads,
+            columns: BumpVec::new_in(arena),
         }
     }
 
@@ -100,16 +104,34 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             self.start(&pixels, sample);
             statistics.spend(Stage::Shade, start);
             self.run(sample, &mut statistics);
-            visit.finish(statistics, |film| {
-                for (place, sums) in self.sums.chunks_exact(self.quads).enumerate() {
-                    let weight = self.weights[place / LANES].lane(place % LANES);
-                    film.add(pixels.places[place] as usize, weight, &sums.as_flattened()[..self.channels]);
-                }
-            });
+            visit.finish(statistics, |film| self.deliver(&pixels, film));
             match visit.next() {
                 Some(next) => sample = next,
                 None => return,
             }
+        }
+    }
+
+    /// Adds what the paths have brought to the film.
+    fn deliver(&mut self, pixels: &Pixels, film: &mut TileFilm) {
+        let quads = self.quads;
+        let (eights, rest) = pixels.paths.as_chunks::<LANES>();
+        for (packet, paths) in eights.iter().enumerate() {
+            self.columns.clear();
+            for quad in 0..quads {
+                let row = |i: usize| {
+                    let [a, b, c, d] = self.sums[paths[i] as usize * quads + quad];
+                    f32x8::new([a, b, c, d, 0.0, 0.0, 0.0, 0.0])
+                };
+                self.columns.extend_from_slice(&transpose(std::array::from_fn(row))[..4]);
+            }
+            let weights = f32x8::from_fn(|i| self.weights[paths[i] as usize]);
+            film.add_eight(packet * LANES, weights, &self.columns[..self.channels]);
+        }
+        for (i, &path) in rest.iter().enumerate() {
+            let values = &self.sums[path as usize * quads..];
+            let pixel = eights.len() * LANES + i;
+            film.add(pixel, self.weights[path as usize], |c| values[c / 4][c % 4]);
         }
     }
 
@@ -123,20 +145,25 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
 
     /// One path from each pixel.
     fn start(&mut self, pixels: &Pixels, sample: u32) {
-        let len = pixels.places.len();
+        let len = pixels.paths.len();
         self.sums.clear();
         self.sums.resize(len * self.quads, [0.0; 4]);
         self.weights.clear();
-        self.paths.resize(len);
+        self.paths.reserve(len);
         let slots = u32x8::from_fn(|i| i as u32);
         for (packet, &(x, y, key)) in pixels.packets.iter().enumerate() {
             let path = Path::start(key, sample);
             let (ray, weight) = camera_rays::rays::<f32x8>(self.scene, x, y, &path);
-            self.weights.push(weight);
+            self.weights.extend_from_slice(&weight.to_array());
             let pixel = slots.wrapping_add(u32x8::splat((packet * LANES) as u32));
             let packet = Packet { org: ray.org, dir: ray.dir, t_far: ray.t_far, path, pixel };
             self.paths.store(&pixel.to_array(), &packet);
         }
+        reserve(&mut self.out.alive, len, false);
+        let alive = &mut self.out.alive[..len.next_multiple_of(LANES)];
+        alive[..len].fill(true);
+        alive[len..].fill(false);
+        self.paths.keep(alive);
     }
 
     /// All rounds of a sample.
@@ -153,7 +180,9 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             self.connect(statistics);
             let start = Instant::now();
             self.add();
-            self.paths.take(&self.out.next, &self.out.alive);
+            let places = (self.paths.len * self.out.branches).next_multiple_of(LANES);
+            std::mem::swap(&mut self.paths, &mut self.out.next);
+            self.paths.keep(&self.out.alive[..places]);
             statistics.spend(Stage::Add, start);
             depth += 1;
         }
@@ -185,11 +214,14 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
         // What the camera sees besides is said in the first round.
         let mut layers = layers.as_mut().filter(|_| depth == 0);
         let miss = scene.materials.len() as u32;
-        keys.clear();
-        keys.extend((0..paths.len).map(|slot| match hits.primitive(slot) {
-            (PrimitiveId::NONE, _) => miss,
-            (hit, u) => scene.material(hit, u).0,
-        }));
+        reserve(keys, paths.len, miss);
+        let keys = &mut keys[..paths.len];
+        for (slot, key) in keys.iter_mut().enumerate() {
+            *key = match hits.primitive(slot) {
+                (PrimitiveId::NONE, _) => miss,
+                (hit, u) => scene.material(hit, u).0,
+            };
+        }
         if self.sort {
             sorter.sort(keys);
         }
@@ -237,7 +269,10 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     fn add(&mut self) {
         let Self { paths, out: Outputs { quads: lit, added, connections, .. }, sums, quads, .. } = self;
         let lit = *lit;
-        connections.for_each(|slot, channel, light| added[slot * lit][channel] += light);
+        for (slot, light) in connections.iter() {
+            let added = &mut added[slot * lit];
+            *added = std::array::from_fn(|c| added[c] + light[c]);
+        }
         for (slot, values) in added.chunks_exact(lit).enumerate() {
             let sums = &mut sums[paths.pixel(slot) * *quads..][..lit];
             for (sums, values) in sums.iter_mut().zip(values) {
@@ -252,7 +287,7 @@ impl Outputs<'_> {
         self.added.clear();
         self.added.resize(slots * self.quads, [0.0; 4]);
         self.connections.clear(slots * shadows);
-        self.next.resize(slots * self.branches);
+        self.next.reserve(slots * self.branches);
         reserve(&mut self.alive, slots * self.branches, false);
         self.alive.fill(false);
     }
@@ -331,6 +366,7 @@ mod tests {
         assert_eq!(out.connections.len, 2);
         let alive: Vec<usize> = (0..16).filter(|&slot| out.alive[slot]).collect();
         assert_eq!(alive, [3, 9]);
-        assert_eq!(out.next.pixel(9), 7);
+        out.next.keep(&out.alive);
+        assert_eq!((out.next.len, out.next.pixel(1)), (2, 7));
     }
 }

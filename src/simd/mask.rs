@@ -2,7 +2,7 @@
 
 use std::ops::{BitAnd, BitOr, Not};
 
-use super::{Mask, f32x8};
+use super::{Bits, Mask, f32x8, u32x8};
 
 /// Eight lanes, each all ones or all zeros.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +46,8 @@ impl Mask for Mask8 {
     }
     #[inline]
     fn from_bitmask(bits: u32) -> Self {
-        Self::from_array(std::array::from_fn(|i| bits >> i & 1 != 0))
+        const BIT: u32x8 = u32x8::new([1, 2, 4, 8, 16, 32, 64, 128]);
+        (u32x8::splat(bits) & BIT).equal(BIT)
     }
     #[inline]
     fn any(self) -> bool {

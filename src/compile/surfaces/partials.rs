@@ -18,7 +18,7 @@ impl Surfaces {
         let index = (primitive - shape.first + shape.first_in_class) as usize;
         match shape.class {
             Class::Triangles { uv, .. } => self.triangle_partials(index, uv),
-            Class::Sphere => {
+            Class::Sphere { .. } => {
                 let row = &self.spheres[index];
                 let [x, y, z] = row.to_local.map(|axis| axis.dot(n));
                 let rim = (x * x + y * y).sqrt();

@@ -25,7 +25,7 @@ use crate::{
 const MAGIC: &[u8] = b"packlight part\n";
 
 /// Grows whenever the meaning of the bytes changes.
-const VERSION: u32 = 2;
+const VERSION: u32 = 1;
 
 /// Why bytes are no part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -286,11 +286,7 @@ mod tests {
         for sample in 0..21 {
             for pixel in 0..6 {
                 let invalid = sample == 5 && pixel == 4;
-                film.add(
-                    pixel,
-                    1.0,
-                    &[0, 1, 2].map(|c| if invalid { f32::NAN } else { (sample + c) as f32 }),
-                );
+                film.add(pixel, 1.0, |c| if invalid { f32::NAN } else { (sample + c) as f32 });
             }
             film.finish_sample();
         }

@@ -136,7 +136,7 @@ fn join(mut parts: Vec<(String, Part)>) -> (Picture, Statistics, Coverage) {
         coverage.least = coverage.least.min(there);
         coverage.most = coverage.most.max(there);
         coverage.complete &= there == samples;
-        let totals = pieces.iter().map(TileFilm::total);
+        let totals = pieces.iter().map(|piece| piece.total().into_owned());
         let join = |mut total: Sums, piece: Sums| {
             total.absorb(&piece);
             total
