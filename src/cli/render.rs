@@ -14,7 +14,7 @@ use super::{
     Cli, console, duration,
     failure::{Failure, warn_of},
     info::warn_of_doubts,
-    memory,
+    memory::{self, Expected, MemoryOption},
     metadata::{self, About},
     output::Output,
     overrides::{IntegratorName, MAX_SIDE, Overrides},
@@ -27,11 +27,12 @@ use super::{
     source::Source,
     style::StyleOptions,
     threads::ThreadsOption,
+    way::RouteName,
 };
 use crate::{
     compile::compile_with,
     picture::{Format, save_with},
-    render::{self, Coverage, Frame, Plan, Settings, Watch},
+    render::{self, Conditions, Coverage, Frame, Plan, Settings, Watch},
     scene::{Film, PixelFormat, SceneDescription, Sensor},
 };
 use keep::{KeepOptions, Name};
@@ -117,8 +118,15 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "NAME", help_heading = MACHINE, default_value = "packet")]
     backend: Backend,
 
+    /// How packets go through the tree: for measurement
+    #[arg(long, value_name = "WAY", help_heading = MACHINE, default_value = "chosen")]
+    way: RouteName,
+
     #[command(flatten, next_help_heading = MACHINE)]
     quality: QualityOption,
+
+    #[command(flatten, next_help_heading = MACHINE)]
+    memory: MemoryOption,
 
     /// Shade hits as they come, not sorted by material: for measurement
     #[arg(long, help_heading = MACHINE)]
@@ -201,9 +209,16 @@ pub(super) fn check(arguments: &Arguments) -> Result<(), Failure> {
     arguments.output.as_ref().map_or(Ok(()), |output| planned(arguments, output).map(drop))
 }
 
-/// The scene with everything that the command line says of it, the time it took to load, and what is to be
-/// rendered.
-fn planned(arguments: &Arguments, output: &Output) -> Result<(SceneDescription, Duration, Plan), Failure> {
+/// A render before anything is compiled.
+struct Planned {
+    description: SceneDescription,
+    load_time: Duration,
+    plan: Plan,
+    memory: Expected,
+}
+
+/// The scene with everything that the command line says of it, and what is to be rendered.
+fn planned(arguments: &Arguments, output: &Output) -> Result<Planned, Failure> {
     let (mut description, load_time) = arguments.source.load()?;
     arguments.overrides().apply(&mut description);
     description.aovs = arguments.aov.iter().map(|layer| layer.channel()).collect();
@@ -212,12 +227,20 @@ fn planned(arguments: &Arguments, output: &Output) -> Result<(SceneDescription, 
         warn_of(format!("{option} only changes a .png; the numbers of this file stay linear"));
     }
     let plan = arguments.plan(&description, output.format)?;
-    Ok((description, load_time, plan))
+    let may_be_part = arguments.time_limit.is_some() || plan.shard != render::Shard::WHOLE;
+    let keeps_sums = arguments.keep.keeps_sums() || may_be_part && output.format == Format::Exr;
+    let conditions = Conditions {
+        quality: arguments.quality.quality(),
+        threads: rayon::current_num_threads(),
+        keeps_sums,
+    };
+    let memory = arguments.memory.check(&description, &conditions)?;
+    Ok(Planned { description, load_time, plan, memory })
 }
 
 /// Load, compile, render, save.
 fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage), Failure> {
-    let (description, load_time, plan) = planned(arguments, output)?;
+    let Planned { description, load_time, plan, memory } = planned(arguments, output)?;
     let scene = compile_with(&description, arguments.quality.quality())?;
     warn_of_doubts(&description, scene.summary().degenerate);
     let settings = arguments.settings();
@@ -250,6 +273,7 @@ fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage),
         lesson: arguments.stats.then(|| Lesson::new(&scene)),
         load_time,
         threads: rayon::current_num_threads(),
+        memory_budget: memory.peak(),
         peak_memory: memory::peak(),
     });
     Ok((report, coverage))
@@ -337,7 +361,7 @@ impl Arguments {
             Backend::Packet => render::Backend::Packet,
             Backend::Scalar => render::Backend::Scalar,
         };
-        Settings { backend, sort: !self.no_sort }
+        Settings { backend, sort: !self.no_sort, route: self.way.into() }
     }
 
     /// What of the command line decides the picture, as it would be typed after the scene.

@@ -8,6 +8,7 @@ use std::time::Instant;
 
 use bumpalo::{Bump, collections::Vec as BumpVec};
 
+use super::Settings;
 use super::aov::{AovIntegrator, Beside};
 use super::camera_rays::{self, Pixels};
 use super::connections::Connections;
@@ -16,7 +17,7 @@ use super::integrator::{Integrator, Outgoing, Path};
 use super::rows::{Hits, Packet, Paths, fill, reserve};
 use super::sort::{Sorter, for_each_unsorted_group};
 use super::statistics::{Stage, Statistics};
-use super::trace;
+use super::trace::{self, Route};
 use super::vertex::Vertex;
 use crate::bvh::Tracer;
 use crate::compile::Scene;
@@ -34,6 +35,7 @@ pub(super) struct Wavefront<'a, I> {
     beside: Option<AovIntegrator>,
     sort: bool,
     channels: usize,
+    route: Route,
     tracer: Tracer,
     paths: Paths<'a>,
     hits: Hits<'a>,
@@ -64,15 +66,16 @@ struct Outputs<'a> {
 }
 
 impl<'a, I: Integrator> Wavefront<'a, I> {
-    pub(super) fn new(arena: &'a Bump, scene: &'a Scene, integrator: &'a I, sort: bool) -> Self {
+    pub(super) fn new(arena: &'a Bump, scene: &'a Scene, integrator: &'a I, settings: &Settings) -> Self {
         let (lit, channels) = (integrator.channels().len(), integrator.all_channels(scene).len());
         Self {
             scene,
             integrator,
             lit,
             beside: (channels > lit).then(|| AovIntegrator { channels: scene.aovs.clone() }),
-            sort,
+            sort: settings.sort,
             channels,
+            route: settings.route,
             tracer: Tracer::new(()),
             paths: Paths::new(arena),
             hits: Hits::new(arena),
@@ -173,7 +176,8 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
         let start = Instant::now();
         let rays = if depth == 0 { &mut statistics.camera_rays } else { &mut statistics.bounce_rays };
         *rays += self.paths.len as u64;
-        statistics.trace_lanes += trace::closest(self.scene, &self.paths, &mut self.hits, &mut self.tracer);
+        let Self { scene, paths, hits, route, tracer, .. } = self;
+        statistics.trace_lanes += trace::closest(scene, paths, hits, *route, tracer);
         statistics.spend(Stage::Trace, start);
     }
 
@@ -235,7 +239,8 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     fn connect(&mut self, statistics: &mut Statistics) {
         let start = Instant::now();
         statistics.shadow_rays += self.out.connections.len as u64;
-        statistics.trace_lanes += trace::occluded(self.scene, &mut self.out.connections, &mut self.tracer);
+        let Self { scene, out, route, tracer, .. } = self;
+        statistics.trace_lanes += trace::occluded(scene, &mut out.connections, *route, tracer);
         statistics.spend(Stage::Trace, start);
     }
 
