@@ -145,7 +145,7 @@ fn mixed(c: &mut Criterion) {
         ("unsorted", Backend::Packet, false),
         ("scalar", Backend::Scalar, true),
     ] {
-        let settings = Settings { backend, sort };
+        let settings = Settings { backend, sort, ..Settings::default() };
         let lanes = render(&scene, &settings, &|_| {}).statistics.shade_lanes;
         if backend == Backend::Packet {
             println!("mixed, {name}: {:.1} % of the lanes of shading at work", 100.0 * lanes.ratio());

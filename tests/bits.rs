@@ -1,5 +1,5 @@
-//! The contract of bits: packet or scalar, one thread or several, sorted or not, on every instruction
-//! set, a scene is one picture.
+//! The contract of bits: by whatever way through the tree, on one thread or several, sorted or not, on every
+//! instruction set, a scene is one picture.
 //!
 //! Every scene in `scenes/` is rendered small, at a size that leaves tiles and packets partly empty.
 //! Within one build its pictures are compared channel by channel, bit by bit; across builds they are
@@ -13,10 +13,11 @@ use std::{
 };
 
 use packlight::{
+    bvh::Way,
     compile::{Scene, compile},
     load::{LoadOptions, load},
     picture::Picture,
-    render::{Backend, Settings, render, replay},
+    render::{Backend, Route, Settings, render, replay},
     scene::{Aov, AovChannel, Film, Integrator, Projection, ReconstructionFilter, SceneDescription},
 };
 
@@ -43,21 +44,28 @@ const FILM: Film = Film::new(43, 35);
 /// Not a power of two.
 const SAMPLES: u32 = 3;
 
-const PACKET: Settings = Settings { backend: Backend::Packet, sort: true };
-const UNSORTED: Settings = Settings { backend: Backend::Packet, sort: false };
-const SCALAR: Settings = Settings { backend: Backend::Scalar, sort: true };
+const PACKET: Settings = Settings { backend: Backend::Packet, sort: true, route: Route::Stream(Way::Chosen) };
 
-/// Every way to render that must not be seen in the picture, beside packets on one thread.
-const WAYS: [(&str, Settings, usize); 8] = [
-    ("packet, 2 threads", PACKET, 2),
-    ("packet, 3 threads", PACKET, 3),
-    ("unsorted, 1 thread", UNSORTED, 1),
-    ("unsorted, 2 threads", UNSORTED, 2),
-    ("unsorted, 3 threads", UNSORTED, 3),
-    ("scalar, 1 thread", SCALAR, 1),
-    ("scalar, 2 threads", SCALAR, 2),
-    ("scalar, 3 threads", SCALAR, 3),
-];
+/// Everything that must not be seen in a picture: which pipeline, how rays go through the tree, in which
+/// order hits are shaded, by how many threads.
+fn ways() -> impl Iterator<Item = (String, Settings, usize)> {
+    let stream = |way| Settings { route: Route::Stream(way), ..PACKET };
+    let kinds = [
+        ("scalar", Settings { backend: Backend::Scalar, ..PACKET }),
+        ("chosen", PACKET),
+        ("packet", stream(Way::Packet)),
+        ("tile", stream(Way::Tile)),
+        ("wave", stream(Way::Wave)),
+        ("single", Settings { route: Route::Single, ..PACKET }),
+    ];
+    let sorted = |(name, settings)| {
+        [("sorted", true), ("unsorted", false)]
+            .map(|(order, sort)| (name, order, Settings { sort, ..settings }))
+    };
+    kinds.into_iter().flat_map(sorted).flat_map(|(name, order, settings)| {
+        [1, 2, 3].map(|threads| (format!("{name}, {order}, {threads} threads"), settings, threads))
+    })
+}
 
 /// All files `scenes/*.xml`, by name.
 fn scenes() -> Vec<(String, PathBuf)> {
@@ -174,7 +182,7 @@ fn a_lens_and_every_filter_give_the_same_bits_every_way() {
         let scene = compile(&changed).expect("a scene of ours compiles");
         let packet = on_threads(1, &scene, &PACKET);
         assert!(difference(&packet, &unchanged).is_some(), "{what}: nothing is to be seen of it");
-        for (way, settings, threads) in WAYS {
+        for (way, settings, threads) in ways() {
             let difference = difference(&on_threads(threads, &scene, &settings), &packet);
             assert!(difference.is_none(), "{what}, {way}: {}", difference.unwrap_or_default());
         }
@@ -190,7 +198,7 @@ fn every_way_to_render_gives_the_same_bits() {
             let packet = on_threads(1, &scene, &PACKET);
             let values = packet.channels.iter().flat_map(|channel| &channel.samples);
             assert!(values.copied().any(|x| x != 0.0), "{name}, {integrator}: nothing is to be seen");
-            for (way, settings, threads) in WAYS {
+            for (way, settings, threads) in ways() {
                 if let Some(difference) = difference(&on_threads(threads, &scene, &settings), &packet) {
                     panic!("scenes/{name}.xml, {integrator}, {way}: {difference}");
                 }
@@ -209,7 +217,7 @@ fn layers_beside_the_picture_have_the_same_bits_every_way() {
         let seen = on_threads(1, &scene, &PACKET);
         (scene.integrator, scene.aovs) = (plain.integrator.clone(), channels());
         let packet = on_threads(1, &scene, &PACKET);
-        for (way, settings, threads) in WAYS {
+        for (way, settings, threads) in ways() {
             let difference = difference(&on_threads(threads, &scene, &settings), &packet);
             assert!(difference.is_none(), "{name}, {way}: {}", difference.unwrap_or_default());
         }
@@ -230,7 +238,7 @@ fn samples_are_replayed_to_the_bit() {
         let scene = compile(&description(&path)).expect("a scene of ours compiles");
         let picture = on_threads(2, &scene, &PACKET);
         for (x, y) in [(0, 0), (21, 17), (33, 34), (42, 20)] {
-            for settings in [PACKET, UNSORTED, SCALAR] {
+            for (_, settings, _) in ways().filter(|(_, _, threads)| *threads == 1) {
                 let samples: Vec<_> =
                     (0..SAMPLES).map(|sample| replay(&scene, &settings, (x, y), sample)).collect();
                 for (c, channel) in picture.channels.iter().enumerate() {
@@ -309,6 +317,16 @@ fn the_scenes_between_them_have_everything() {
         ["bitmap", "checkerboard", "area", "point", "spot", "directional", "constant", "envmap", "shlight"];
     for kind in shapes.iter().chain(&materials).chain(&others) {
         assert!(text.contains(&format!(" type=\"{kind}\"")), "no scene has a `{kind}`");
+    }
+}
+
+/// {scalar, packet, tile, wave, single} and what is chosen, {sorted, unsorted}, {1, 2, 3} threads.
+#[test]
+fn the_matrix_is_whole() {
+    let settings: Vec<_> = ways().map(|(_, settings, threads)| (settings, threads)).collect();
+    assert_eq!(settings.len(), 6 * 2 * 3);
+    for (i, one) in settings.iter().enumerate() {
+        assert!(!settings[..i].contains(one), "{one:?} twice");
     }
 }
 

@@ -47,7 +47,7 @@ fn every_integrator_keeps_them_out_and_finds_them_again() {
     for integrator in integrators() {
         let scene = compile(&dazzling(integrator.clone())).expect("the scene compiles");
         for backend in [Backend::Packet, Backend::Scalar] {
-            let settings = Settings { backend, sort: true };
+            let settings = Settings { backend, ..Settings::default() };
             let rendered = render(&scene, &settings, &|_| {});
             let statistics = rendered.statistics;
             assert!((100..4000).contains(&statistics.invalid_samples), "{integrator:?} {statistics:?}");

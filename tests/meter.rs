@@ -132,7 +132,7 @@ fn both_pipelines_read_the_same_bits() {
         shining("disk", &above(1.0, 1.0)) + &shining("sphere", "<point name='center' x='1' y='0' z='2'/>");
     let receiver = Receiver::Point { position: Vec3::new(0.1, 0.2, 0.0), normal: Vec3::Z };
     let reading = |backend| {
-        let settings = Settings { backend, sort: true };
+        let settings = Settings { backend, ..Settings::default() };
         meter::measure(scene(&body), receiver, 1 << 12, &settings)
     };
     assert_eq!(reading(Backend::Packet), reading(Backend::Scalar));

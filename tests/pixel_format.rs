@@ -28,7 +28,7 @@ fn picture(format: &str, integrator: &str, others: &str, backend: Backend) -> Pi
     let loaded = load(&path, &LoadOptions::default()).expect(format);
     assert!(loaded.warnings.is_empty(), "{}", loaded.warnings[0]);
     let scene = compile(&loaded.description).expect(format);
-    render(&scene, &Settings { backend, sort: true }, &|_| {}).picture
+    render(&scene, &Settings { backend, ..Settings::default() }, &|_| {}).picture
 }
 
 const LAMP: &str = "<emitter type='directional'><vector name='direction' x='0.1' y='0.2' z='-1'/></emitter>";

@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::{
     console,
     failure::{Failure, warn_of},
-    memory,
+    memory::{self, Expected},
     overrides::IntegratorName,
     quality::{QualityName, QualityOption},
     quantity::{counted, grouped, mebibytes, time},
@@ -18,6 +18,7 @@ use super::{
 };
 use crate::{
     compile::{Summary, TreeShape, compile_with},
+    render::Conditions,
     scene::{Integrator, Projection, SceneDescription},
     simd::cpu,
 };
@@ -39,10 +40,14 @@ pub(super) struct Arguments {
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (description, load_time) = arguments.source.load()?;
-    let compiled = compile_with(&description, arguments.quality.quality())?;
+    let quality = arguments.quality.quality();
+    let conditions = Conditions { quality, threads: rayon::current_num_threads(), keeps_sums: false };
+    let expected = Expected::new(&description, &conditions);
+    let compiled = compile_with(&description, quality)?;
     warn_of_doubts(&description, compiled.summary().degenerate);
     let scene = arguments.source.path.display().to_string();
-    let info = Info::new(scene, &description, (compiled.summary(), compiled.tree_shape()), load_time);
+    let compiled = (compiled.summary(), compiled.tree_shape());
+    let info = Info::new(scene, &description, compiled, &expected, load_time);
     if arguments.json { console::print_json(&info) } else { console::print(&info.to_string()) }
 }
 
@@ -58,8 +63,6 @@ struct Info {
     bvh_depth: u32,
     bvh_node_cost: f64,
     bvh_primitive_cost: f64,
-    /// Of all sums and the picture while it is rendered.
-    film_bytes: u64,
     instructions_offered: Vec<&'static str>,
     triangles: u64,
     degenerate_triangles: u64,
@@ -77,6 +80,11 @@ struct Info {
     bvh_seconds: f64,
     quality: &'static str,
     load_seconds: f64,
+    /// The most memory that rendering is expected to take on as many threads as there are cores: what
+    /// `--memory-limit` is compared with.
+    memory_budget_bytes: u64,
+    /// What it is taken for; not all of it at one time.
+    memory_parts_bytes: Vec<(&'static str, u64)>,
     /// The most memory the program has had, the description of the scene included; absent where the system
     /// does not say.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -101,6 +109,7 @@ impl Info {
         scene: String,
         description: &SceneDescription,
         (summary, tree): (Summary, TreeShape),
+        expected: &Expected,
         load_time: Duration,
     ) -> Self {
         let sensor = &description.sensor;
@@ -119,7 +128,6 @@ impl Info {
             bvh_depth: tree.depth,
             bvh_node_cost: tree.node_cost,
             bvh_primitive_cost: tree.primitive_cost,
-            film_bytes: film_bytes(description),
             instructions_offered: cpu::offered(),
             triangles: summary.triangles,
             degenerate_triangles: summary.degenerate,
@@ -135,6 +143,8 @@ impl Info {
             bvh_seconds: summary.bvh_time.as_secs_f64(),
             quality: QualityName::from(summary.quality).name(),
             load_seconds: load_time.as_secs_f64(),
+            memory_budget_bytes: expected.peak(),
+            memory_parts_bytes: expected.budget.parts().to_vec(),
             peak_memory_bytes: memory::peak(),
             width: sensor.film.window().width,
             height: sensor.film.window().height,
@@ -157,6 +167,13 @@ impl Info {
     }
 }
 
+impl Info {
+    fn parts(&self) -> String {
+        let part = |&(name, bytes): &(&str, u64)| format!("{name} {}", mebibytes(bytes));
+        self.memory_parts_bytes.iter().map(part).collect::<Vec<_>>().join(", ")
+    }
+}
+
 /// Tells what is probably not meant.
 pub(super) fn warn_of_doubts(description: &SceneDescription, degenerate: u64) {
     description.doubts().iter().for_each(warn_of);
@@ -164,14 +181,6 @@ pub(super) fn warn_of_doubts(description: &SceneDescription, degenerate: u64) {
         let triangles = counted(degenerate, "triangle");
         warn_of(format!("{triangles} without area can't be hit and are left out"));
     }
-}
-
-/// Sums of a tile at two nodes of their tree, and the picture: 32 bits a channel.
-fn film_bytes(description: &SceneDescription) -> u64 {
-    let window = description.sensor.film.window();
-    let pixels = u64::from(window.width) * u64::from(window.height);
-    let (channels, weight_and_count) = (3, 2);
-    pixels * 4 * (2 * (channels + weight_and_count) + channels)
 }
 
 fn counts(count: u64, kinds: &BTreeMap<String, u64>) -> String {
@@ -230,8 +239,9 @@ impl fmt::Display for Info {
                 "memory",
                 self.peak_memory_bytes
                     .map_or("unknown".into(), |bytes| format!("{} at the peak", mebibytes(bytes)))
-                    + &format!(", and {} to render", mebibytes(self.film_bytes)),
+                    + &format!(", about {} to render", mebibytes(self.memory_budget_bytes)),
             ),
+            ("", self.parts()),
             ("film", format!("{} x {}", self.width, self.height)),
             ("samples", format!("{} a pixel, seed {}", self.samples_per_pixel, self.seed)),
             ("sensor", sensor),
@@ -263,12 +273,11 @@ mod tests {
             instance_bytes: 250,
             ..Summary::default()
         };
-        Info::new(
-            "bunny.xml".into(),
-            &SceneDescription::default(),
-            (summary, TreeShape::default()),
-            Duration::from_millis(5),
-        )
+        let description = SceneDescription::default();
+        let conditions = Conditions { quality: summary.quality, threads: 2, keeps_sums: false };
+        let expected = Expected::new(&description, &conditions);
+        let compiled = (summary, TreeShape::default());
+        Info::new("bunny.xml".into(), &description, compiled, &expected, Duration::from_millis(5))
     }
 
     #[test]
@@ -278,6 +287,8 @@ mod tests {
             "69,451",
             "100,000 of 1 group, 6,945,100,000 primitives, 250 bytes an instance",
             "0 deep, 3.0 MiB, medium quality",
+            "MiB to render",
+            "building the BVH 0.0 MiB, film",
             "768 x 576",
             "perspective, 42.31 degrees",
             "path",

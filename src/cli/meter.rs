@@ -10,6 +10,7 @@ use serde::Serialize;
 use super::{
     console,
     failure::{Failure, warn_of},
+    memory::MemoryOption,
     quality::QualityOption,
     quantity::grouped,
     source::Source,
@@ -17,7 +18,7 @@ use super::{
 };
 use crate::{
     compile::compile_with,
-    render::{Receiver, Settings, meter},
+    render::{Conditions, Receiver, Settings, meter},
 };
 
 /// Arguments of `meter`.
@@ -48,6 +49,9 @@ pub(super) struct Arguments {
     #[command(flatten)]
     quality: QualityOption,
 
+    #[command(flatten)]
+    memory: MemoryOption,
+
     /// One JSON object on stdout
     #[arg(long)]
     json: bool,
@@ -67,7 +71,10 @@ fn measure(arguments: &Arguments) -> Result<Reading, Failure> {
     let (mut description, _) = arguments.source.load()?;
     let sampler = &mut description.sensor.sampler;
     sampler.seed = arguments.seed.unwrap_or(sampler.seed);
-    let scene = compile_with(&description, arguments.quality.quality())?;
+    let quality = arguments.quality.quality();
+    let threads = rayon::current_num_threads();
+    arguments.memory.check(&description, &Conditions { quality, threads, keeps_sums: false })?;
+    let scene = compile_with(&description, quality)?;
     let point = arguments.at.zip(arguments.normal);
     let receiver = match point {
         Some((position, normal)) => Receiver::Point { position, normal },

@@ -63,7 +63,8 @@ Examples:
 
 Exit codes:
   0  done
-  1  a file could not be read, understood or written, or a model or scene failed its check
+  1  a file could not be read, understood or written, a scene does not fit --memory-limit, or a model or
+     scene failed its check
   2  the command line was not understood
   3  this processor lacks instructions that the program was compiled to use
   4  stopped by a signal; what was there was written";

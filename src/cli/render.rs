@@ -20,7 +20,8 @@ use super::{
     Cli, console, duration,
     failure::{Failure, warn_of},
     info::warn_of_doubts,
-    memory, metadata,
+    memory::{self, MemoryOption},
+    metadata,
     output::{Output, check_writable},
     overrides::{IntegratorName, MAX_SIDE, Overrides},
     progress::Bar,
@@ -31,6 +32,7 @@ use super::{
     source::Source,
     style::StyleOptions,
     threads::ThreadsOption,
+    way::RouteName,
 };
 use crate::{
     compile::compile_with,
@@ -40,7 +42,7 @@ use crate::{
 };
 use keep::{KeepOptions, Name};
 use lesson::Lesson;
-use plan::planned;
+use plan::{Planned, planned};
 use save::Ended;
 use share::ShardOptions;
 
@@ -139,12 +141,19 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "NAME", help_heading = MACHINE, default_value = "packet")]
     backend: Backend,
 
+    /// How packets go through the tree: for measurement
+    #[arg(long, value_name = "WAY", help_heading = MACHINE, default_value = "chosen")]
+    way: RouteName,
+
     #[command(flatten, next_help_heading = MACHINE)]
     quality: QualityOption,
 
     /// Show the picture while it is rendered: in tev, or whatever listens there as tev does
     #[arg(long, value_name = "HOST:PORT", help_heading = MACHINE, conflicts_with = "pixel", value_parser = display::parse)]
     display_server: Option<display::Server>,
+
+    #[command(flatten, next_help_heading = MACHINE)]
+    memory: MemoryOption,
 
     /// Shade hits as they come, not sorted by material: for measurement
     #[arg(long, help_heading = MACHINE)]
@@ -232,7 +241,7 @@ pub(super) fn check(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Load, compile, render, save.
 fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage), Failure> {
-    let (description, load_time, plan) = planned(arguments, output)?;
+    let Planned { description, load_time, plan, memory } = planned(arguments, output)?;
     let denoiser = arguments.denoise.then(denoised::load).transpose()?;
     let scene = compile_with(&description, arguments.quality.quality())?;
     warn_of_doubts(&description, scene.summary().degenerate);
@@ -267,6 +276,7 @@ fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage),
         denoised,
         load_time,
         threads: rayon::current_num_threads(),
+        memory_budget: memory.peak(),
         peak_memory: memory::peak(),
     });
     Ok((report, coverage))
@@ -293,7 +303,7 @@ impl Arguments {
             Backend::Packet => render::Backend::Packet,
             Backend::Scalar => render::Backend::Scalar,
         };
-        Settings { backend, sort: !self.no_sort }
+        Settings { backend, sort: !self.no_sort, route: self.way.into() }
     }
 
     /// What of the command line decides the picture, as it would be typed after the scene.

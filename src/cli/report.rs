@@ -52,6 +52,8 @@ pub(super) struct Report {
     stats: Option<Lesson>,
     #[serde(skip)]
     options: String,
+    /// What was expected before the tree was built.
+    memory_budget_bytes: u64,
     #[serde(skip_serializing_if = "Option::is_none")]
     peak_memory_bytes: Option<u64>,
 }
@@ -101,6 +103,7 @@ pub(super) struct Sources<'a> {
     pub(super) denoised: Option<Denoised>,
     pub(super) load_time: Duration,
     pub(super) threads: usize,
+    pub(super) memory_budget: u64,
     pub(super) peak_memory: Option<u64>,
 }
 
@@ -149,6 +152,7 @@ impl From<Sources<'_>> for Report {
             denoised: from.denoised,
             stats: from.lesson,
             options: from.options,
+            memory_budget_bytes: from.memory_budget,
             peak_memory_bytes: from.peak_memory,
         }
     }
@@ -271,6 +275,7 @@ mod tests {
             denoised: None,
             load_time: Duration::from_millis(12),
             threads: 2,
+            memory_budget: 1 << 20,
             peak_memory: None,
         })
     }

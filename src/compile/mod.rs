@@ -7,6 +7,7 @@ mod instances;
 mod lights;
 mod materials;
 mod mesh;
+mod needs;
 mod primitives;
 mod queries;
 mod shapes;
@@ -17,6 +18,7 @@ mod tree;
 use std::time::{Duration, Instant};
 
 pub use lights::envmap;
+pub use needs::{Needs, needs};
 pub use primitives::Primitives;
 pub use surfaces::Surface;
 pub use tree::TreeShape;

@@ -51,6 +51,11 @@ impl MerlTable {
         Self { values, lobe }
     }
 
+    /// What it takes in memory.
+    pub fn bytes(&self) -> u64 {
+        size_of_val(self.values.as_slice()) as u64
+    }
+
     /// The table of an isotropic, reciprocal f(wo, wi): its values at the centres of the cells.
     pub fn tabulate(f: impl Fn(Vec3, Vec3) -> Vec3) -> Self {
         let [_, d_cells, phi_cells] = MERL_CELLS;

@@ -32,7 +32,7 @@ use crate::{
 };
 
 /// Side of a tile in pixels: a thousand paths, whose columns stay in a core's second-level cache.
-const TILE: u32 = 32;
+pub(super) const TILE: u32 = 32;
 
 /// What is to be rendered of a scene, and how well.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -172,7 +172,7 @@ impl Frame {
                 let Some(first) = take() else { return };
                 let mut arena = lock(&arenas[thread.index()]);
                 arena.reset();
-                let mut wavefront = Wavefront::new(&arena, scene, integrator, settings.sort);
+                let mut wavefront = Wavefront::new(&arena, scene, integrator, settings);
                 for cell in std::iter::once(first).chain(std::iter::from_fn(take)) {
                     let visit = Visit { cell, frame: self, until, total, done: &done, watch };
                     match settings.backend {

@@ -6,6 +6,7 @@
 mod alpha;
 mod ao;
 mod aov;
+mod budget;
 mod camera_rays;
 mod connections;
 mod departure;
@@ -30,11 +31,13 @@ mod vertex;
 mod wavefront;
 mod whitted;
 
+pub use budget::{Budget, Conditions};
 pub use frame::{Coverage, Frame, Plan, TileView, Watch, tile_count};
 pub use irradiance::Receiver;
 pub use ray_classes::{Query, RayClass, ray_classes};
 pub use shard::{Shard, ShardBy};
 pub use statistics::{LaneUse, Profile, Statistics};
+pub use trace::Route;
 
 use bumpalo::Bump;
 
@@ -62,11 +65,13 @@ pub struct Settings {
     pub backend: Backend,
     /// Hits are sorted by material before they are shaded.
     pub sort: bool,
+    /// How the packet backend's rays go through the tree.
+    pub route: Route,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { backend: Backend::Packet, sort: true }
+        Self { backend: Backend::Packet, sort: true, route: Route::default() }
     }
 }
 
@@ -187,7 +192,7 @@ pub fn replay(scene: &Scene, settings: &Settings, pixel: (u32, u32), sample: u32
             let values = match settings.backend {
                 Backend::Packet => {
                     let arena = Bump::new();
-                    Wavefront::new(&arena, scene, integrator, settings.sort).sample(pixel, sample)
+                    Wavefront::new(&arena, scene, integrator, settings).sample(pixel, sample)
                 }
                 Backend::Scalar => {
                     let (mut traversal, mut statistics) = (Traversal::new(()), Statistics::default());

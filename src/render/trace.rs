@@ -3,10 +3,25 @@
 use super::connections::Connections;
 use super::rows::{Hits, Paths};
 use super::statistics::LaneUse;
-use crate::bvh::{Stream, Tracer};
+use crate::bvh::{Stream, Tracer, Way};
 use crate::compile::Scene;
 use crate::geometry::{Hit, Rayx8};
-use crate::simd::Mask8;
+use crate::simd::{LANES, Mask, Mask8};
+
+/// How rays of a wavefront go through the tree. Every way finds the same, to the bit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Route {
+    /// As a stream, by one way or by whichever suits them.
+    Stream(Way),
+    /// One after the other, by the scalar kernels.
+    Single,
+}
+
+impl Default for Route {
+    fn default() -> Self {
+        Self::Stream(Way::Chosen)
+    }
+}
 
 /// Paths, and where what they hit is written.
 struct Nearest<'c, 'a> {
@@ -56,16 +71,48 @@ pub(super) fn closest<'a>(
     scene: &Scene,
     paths: &Paths<'a>,
     hits: &mut Hits<'a>,
+    route: Route,
     tracer: &mut Tracer,
 ) -> LaneUse {
     hits.resize(paths.len);
-    scene.trace::<false, _, _>(&mut Nearest { paths, hits }, scene.way(), tracer);
+    trace::<false>(scene, &mut Nearest { paths, hits }, route, tracer);
     LaneUse::of_packets(paths.len)
 }
 
 /// Takes the light from connections that anything blocks.
-pub(super) fn occluded(scene: &Scene, connections: &mut Connections, tracer: &mut Tracer) -> LaneUse {
+pub(super) fn occluded(
+    scene: &Scene,
+    connections: &mut Connections,
+    route: Route,
+    tracer: &mut Tracer,
+) -> LaneUse {
     let len = connections.len;
-    scene.trace::<true, _, _>(&mut Blocked(connections), scene.way(), tracer);
+    trace::<true>(scene, &mut Blocked(connections), route, tracer);
     LaneUse::of_packets(len)
+}
+
+fn trace<const ANY: bool>(scene: &Scene, stream: &mut impl Stream, route: Route, tracer: &mut Tracer) {
+    let way = match route {
+        Route::Stream(Way::Chosen) => scene.way(),
+        Route::Stream(way) => way,
+        Route::Single => return one_by_one::<ANY>(scene, stream, tracer),
+    };
+    scene.trace::<ANY, _, _>(stream, way, tracer);
+}
+
+fn one_by_one<const ANY: bool>(scene: &Scene, stream: &mut impl Stream, tracer: &mut Tracer) {
+    let traversal = &mut tracer.traversal;
+    for first in (0..stream.len()).step_by(LANES) {
+        let (rays, active) = stream.packet(first);
+        let active = active.to_bitmask();
+        for lane in (0..LANES).filter(|lane| active >> lane & 1 != 0) {
+            let ray = rays.lane(lane);
+            let hit = match ANY {
+                false => scene.closest_hit(&ray, traversal),
+                true if scene.occluded(&ray, traversal) => Hit::BLOCKED,
+                true => Hit::MISS,
+            };
+            stream.answer(first + lane, &hit);
+        }
+    }
 }

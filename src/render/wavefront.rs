@@ -8,6 +8,7 @@ use std::time::Instant;
 
 use bumpalo::{Bump, collections::Vec as BumpVec};
 
+use super::Settings;
 use super::camera_rays::{self, Pixels};
 use super::connections::Connections;
 use super::frame::Visit;
@@ -16,7 +17,7 @@ use super::layers::{Layers, Quad};
 use super::rows::{Hits, Packet, Paths, fill, reserve};
 use super::sort::{Sorter, for_each_unsorted_group};
 use super::statistics::{Stage, Statistics};
-use super::trace;
+use super::trace::{self, Route};
 use super::vertex::Vertex;
 use crate::bvh::Tracer;
 use crate::compile::Scene;
@@ -33,6 +34,7 @@ pub(super) struct Wavefront<'a, I> {
     layers: Option<Layers<'a>>,
     sort: bool,
     channels: usize,
+    route: Route,
     tracer: Tracer,
     paths: Paths<'a>,
     hits: Hits<'a>,
@@ -64,7 +66,7 @@ struct Outputs<'a> {
 }
 
 impl<'a, I: Integrator> Wavefront<'a, I> {
-    pub(super) fn new(arena: &'a Bump, scene: &'a Scene, integrator: &'a I, sort: bool) -> Self {
+    pub(super) fn new(arena: &'a Bump, scene: &'a Scene, integrator: &'a I, settings: &Settings) -> Self {
         let (lit, channels) = (integrator.channels().len(), integrator.all_channels(scene).len());
         let layers = (channels > lit).then(|| Layers::new(arena, scene, lit..channels));
         let quads = layers.as_ref().map_or(lit.div_ceil(4), Layers::quads);
@@ -72,8 +74,9 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             scene,
             integrator,
             layers,
-            sort,
+            sort: settings.sort,
             channels,
+            route: settings.route,
             tracer: Tracer::new(()),
             paths: Paths::new(arena),
             hits: Hits::new(arena),
@@ -192,7 +195,8 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
         let start = Instant::now();
         let rays = if depth == 0 { &mut statistics.camera_rays } else { &mut statistics.bounce_rays };
         *rays += self.paths.len as u64;
-        statistics.trace_lanes += trace::closest(self.scene, &self.paths, &mut self.hits, &mut self.tracer);
+        let Self { scene, paths, hits, route, tracer, .. } = self;
+        statistics.trace_lanes += trace::closest(scene, paths, hits, *route, tracer);
         statistics.spend(Stage::Trace, start);
     }
 
@@ -261,7 +265,8 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     fn connect(&mut self, statistics: &mut Statistics) {
         let start = Instant::now();
         statistics.shadow_rays += self.out.connections.len as u64;
-        statistics.trace_lanes += trace::occluded(self.scene, &mut self.out.connections, &mut self.tracer);
+        let Self { scene, out, route, tracer, .. } = self;
+        statistics.trace_lanes += trace::occluded(scene, &mut out.connections, *route, tracer);
         statistics.spend(Stage::Trace, start);
     }
 

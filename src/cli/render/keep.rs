@@ -52,6 +52,11 @@ impl Name<'_> {
 }
 
 impl KeepOptions {
+    /// Will sums be read or written?
+    pub(super) fn keeps_sums(&self) -> bool {
+        self.checkpoint.is_some() || self.resume.is_some()
+    }
+
     /// Before anything is rendered: can the checkpoint be written?
     pub(super) fn check(&self) -> Result<(), Failure> {
         self.checkpoint.as_deref().map_or(Ok(()), check_writable)

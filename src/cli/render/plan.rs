@@ -9,20 +9,27 @@ use crate::{
     cli::{
         Cli,
         failure::{Failure, warn_of},
+        memory::Expected,
         output::Output,
         overrides::IntegratorName,
     },
     picture::Format,
-    render::{self, Plan},
+    render::{self, Conditions, Plan, Shard},
     scene::{PixelFormat, Projection, SceneDescription, Sensor},
 };
 
-/// The scene with everything that the command line says of it, the time it took to load, and what is to be
-/// rendered.
-pub(super) fn planned(
-    arguments: &Arguments,
-    output: &Output,
-) -> Result<(SceneDescription, Duration, Plan), Failure> {
+/// A render before anything is compiled.
+pub(super) struct Planned {
+    /// The scene with everything that the command line says of it.
+    pub(super) description: SceneDescription,
+    pub(super) load_time: Duration,
+    /// What is to be rendered.
+    pub(super) plan: Plan,
+    pub(super) memory: Expected,
+}
+
+/// Loads the scene, and sees whether all that is asked for fits it, and into memory.
+pub(super) fn planned(arguments: &Arguments, output: &Output) -> Result<Planned, Failure> {
     let (mut description, load_time) = arguments.source.load()?;
     arguments.overrides().apply(&mut description);
     let film = &mut description.sensor.film;
@@ -39,7 +46,15 @@ pub(super) fn planned(
         warn_of(format!("{option} only changes a .png; the numbers of this file stay linear"));
     }
     let plan = plan(arguments, &description, output.format)?;
-    Ok((description, load_time, plan))
+    let may_be_part = arguments.time_limit.is_some() || plan.shard != Shard::WHOLE;
+    let keeps_sums = arguments.keep.keeps_sums() || may_be_part && output.format == Format::Exr;
+    let conditions = Conditions {
+        quality: arguments.quality.quality(),
+        threads: rayon::current_num_threads(),
+        keeps_sums,
+    };
+    let memory = arguments.memory.check(&description, &conditions)?;
+    Ok(Planned { description, load_time, plan, memory })
 }
 
 fn refused(kind: ErrorKind, message: impl Into<String>) -> Failure {

@@ -1,0 +1,162 @@
+//! How much memory a render will need, known from a description's counts before any of it is taken.
+//!
+//! An estimate, meant to be close and rather too high: what allocators keep and how full nodes are differs
+//! from scene to scene. `tests/memory.rs` holds it against what renders really take.
+
+use super::{aov, frame::TILE};
+use crate::bvh::Quality;
+use crate::compile::{Needs, needs};
+use crate::film::sums;
+use crate::scene::{Integrator, PixelFormat, SceneDescription};
+use crate::simd::LANES;
+
+/// The program itself, before it has read anything.
+const PROGRAM: u64 = 8 << 20;
+/// Stack, and what its allocator keeps, of a thread.
+const THREAD: u64 = 256 << 10;
+const FLOAT: u64 = 4;
+
+/// Bytes, by what they are for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Budget {
+    /// Code and stacks.
+    pub program: u64,
+    /// The scene.
+    pub scene: Needs,
+    /// Sums, the picture that is made of them, and the file that is made of it.
+    pub film: u64,
+    /// Paths in flight.
+    pub wavefronts: u64,
+}
+
+/// What is known of a render besides its scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Conditions {
+    /// How much work goes into the tree.
+    pub quality: Quality,
+    /// How many render.
+    pub threads: usize,
+    /// Are sums written too, as of shards and checkpoints?
+    pub keeps_sums: bool,
+}
+
+impl Budget {
+    /// Of rendering a description.
+    pub fn new(description: &SceneDescription, conditions: &Conditions) -> Self {
+        let threads = conditions.threads as u64;
+        Self {
+            program: PROGRAM + threads * THREAD,
+            scene: needs(description, conditions.quality),
+            film: film(description, conditions.keeps_sums),
+            wavefronts: threads * wavefront(description),
+        }
+    }
+
+    /// The most that is there at one time: a tree is finished before a film is begun.
+    pub fn peak(&self) -> u64 {
+        let Needs { meshes, textures, columns, tree, building } = self.scene;
+        self.program + meshes + textures + columns + tree + building.max(self.film + self.wavefronts)
+    }
+
+    /// The parts, named, in the order in which they are taken.
+    pub fn parts(&self) -> [(&'static str, u64); 8] {
+        let Needs { meshes, textures, columns, tree, building } = self.scene;
+        [
+            ("program", self.program),
+            ("meshes", meshes),
+            ("textures", textures),
+            ("columns", columns),
+            ("BVH", tree),
+            ("building the BVH", building),
+            ("film", self.film),
+            ("wavefront", self.wavefronts),
+        ]
+    }
+}
+
+/// Channels that are summed: colours, and what the camera sees besides.
+fn channels(description: &SceneDescription) -> u64 {
+    let beside = aov::layers(&description.aovs).count();
+    match &description.integrator {
+        Integrator::Aov { channels } => (aov::layers(channels).count() + beside) as u64,
+        _ => (3 + beside) as u64,
+    }
+}
+
+fn film(description: &SceneDescription, keeps_sums: bool) -> u64 {
+    let window = description.sensor.film.window();
+    let pixels = u64::from(window.width) * u64::from(window.height);
+    let channels = channels(description);
+    let alpha = match description.sensor.film.format {
+        PixelFormat::Rgb | PixelFormat::Luminance => 0,
+        PixelFormat::Rgba | PixelFormat::LuminanceAlpha => 1,
+    };
+    // A weight and a count beside the sums; the block that is open, and one node for each binary digit of the
+    // number of blocks.
+    let blocks = description.sensor.sampler.sample_count / sums::BLOCK;
+    let sums = (channels + 2) * FLOAT * (1 + u64::from(blocks.count_ones()));
+    // The picture, its copy in the order of the file, and the file.
+    let picture = (channels + alpha) * FLOAT * 3;
+    pixels * (sums + picture + if keeps_sums { 3 * sums } else { 0 })
+}
+
+/// Of one thread.
+fn wavefront(description: &SceneDescription) -> u64 {
+    let lights = description.emitters.len()
+        + description.shapes.iter().filter(|shape| shape.radiance.is_some()).count();
+    let (shadow_rays, branches) = match description.integrator {
+        Integrator::Direct { .. } => (lights as u64, 1),
+        Integrator::Whitted { .. } => (lights as u64, 2),
+        Integrator::Path { .. } | Integrator::AmbientOcclusion { .. } | Integrator::Irradiance { .. } => {
+            (1, 1)
+        }
+        Integrator::Aov { .. } => (0, 1),
+    };
+    let channels = channels(description).next_multiple_of(4);
+    // Rows of paths, now and next; hits, keys and order; sums of the round and of the pixel; connections.
+    let path = 64 * (1 + branches) + 28 + 2 * channels * FLOAT + shadow_rays * 11 * FLOAT;
+    // Where paths branch there are more of them than pixels, say twice as many; and an arena keeps what has been
+    // outgrown.
+    let slots = u64::from(TILE * TILE) * branches + LANES as u64;
+    2 * slots * path
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Film;
+
+    const CONDITIONS: Conditions = Conditions { quality: Quality::Medium, threads: 2, keeps_sums: false };
+
+    fn film_of(samples: u32, side: u32) -> u64 {
+        let mut description = SceneDescription::default();
+        description.sensor.film = Film::new(side, side);
+        description.sensor.sampler.sample_count = samples;
+        Budget::new(&description, &CONDITIONS).film
+    }
+
+    #[test]
+    fn a_film_grows_with_its_pixels_and_with_the_binary_digits_of_its_blocks() {
+        assert_eq!(film_of(1, 200), 4 * film_of(1, 100));
+        assert_eq!(film_of(16, 100), film_of(1024, 100));
+        assert!(film_of(16, 100) < film_of(48, 100));
+        let sums = film_of(16, 100) - film_of(1, 100);
+        assert_eq!(sums, 100 * 100 * 20);
+    }
+
+    #[test]
+    fn a_peak_is_no_more_than_the_parts() {
+        let budget = Budget::new(&SceneDescription::default(), &CONDITIONS);
+        let parts: u64 = budget.parts().iter().map(|(_, bytes)| bytes).sum();
+        assert!(budget.peak() <= parts && budget.peak() > budget.film + budget.wavefronts);
+    }
+
+    #[test]
+    fn lights_cost_connections_where_all_are_asked() {
+        let light = crate::scene::Emitter::Constant { radiance: glam::Vec3::ONE };
+        let mut description = SceneDescription { emitters: vec![light; 1000], ..Default::default() };
+        let one = Budget::new(&description, &CONDITIONS).wavefronts;
+        description.integrator = Integrator::Direct { hide_emitters: false };
+        assert!(Budget::new(&description, &CONDITIONS).wavefronts > 50 * one);
+    }
+}
