@@ -19,6 +19,9 @@ pub(super) const SPHERE: u8 = 1;
 pub(super) const CANONICAL: u8 = 2;
 pub(super) const INSTANCE: u8 = 3;
 
+/// For up to so many packets of a tile, the planes of a block's triangles cost more than they spare.
+const FEW: u32 = 2;
+
 /// Something that can be hit.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Primitive {
@@ -250,6 +253,7 @@ impl Leaves for Primitives {
         hits: &mut [Hitx8; 8],
     ) -> u32 {
         let every = Mask8::splat(true);
+        let pencils = pencils.filter(|_| mask.count_ones() > FEW);
         let (Some(block), Some(pencils)) = (self.triangles.get(first as usize / BLOCK), pencils) else {
             for packet in (0..8).filter(|packet| mask >> packet & 1 != 0) {
                 self.intersect_packet::<ANY>(first, count, &packets[packet], every, &mut hits[packet]);

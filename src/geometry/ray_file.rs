@@ -59,10 +59,15 @@ impl Ray32 {
     /// The packet of up to eight rays; lanes beyond the last are [`Ray32::NEVER`].
     #[inline(always)]
     pub fn packet(rays: &[Self]) -> Rayx8 {
-        match rays.first_chunk() {
-            Some(rays) => Self::whole_packet(rays),
-            None => Self::padded_packet(rays),
-        }
+        // Only the rays go through memory where some are missing: a packet that might would always do so.
+        let padded;
+        Self::whole_packet(match rays.first_chunk() {
+            Some(rays) => rays,
+            None => {
+                padded = Self::padded(rays);
+                &padded
+            }
+        })
     }
 
     #[inline(always)]
@@ -75,8 +80,8 @@ impl Ray32 {
     }
 
     #[cold]
-    fn padded_packet(rays: &[Self]) -> Rayx8 {
-        Self::whole_packet(&std::array::from_fn(|i| *rays.get(i).unwrap_or(&Self::NEVER)))
+    fn padded(rays: &[Self]) -> [Self; LANES] {
+        std::array::from_fn(|i| *rays.get(i).unwrap_or(&Self::NEVER))
     }
 
     #[inline]

@@ -15,8 +15,9 @@
 //! signs are certain. Within it two neighbours might both say that the ray is on the other's side of their
 //! edge; there, and for hardly any ray, [`crossing`] decides, which can't.
 //!
-//! In lanes, a bound on the margins of all triangles of the scene, known for a ray before it meets any, sorts
-//! out those that are far beside the ray with a multiplication and a comparison.
+//! In lanes, a bound on the margins of all triangles of the scene, known for a ray before it meets any, takes
+//! their place: whoever is beyond it, on either side, is certain. Only for the others are the margins worked
+//! out.
 
 use glam::Vec3;
 
@@ -145,8 +146,6 @@ pub struct Aspect<R> {
     pub s: Vector3<R>,
     /// s × e₁.
     pub q: Vector3<R>,
-    /// What a direction's magnitudes are multiplied with to bound the rounding of a numerator.
-    pub doubt: Vector3<R>,
     /// The lower corners of their boxes.
     pub min: Vector3<R>,
     /// The upper corners.
@@ -155,24 +154,24 @@ pub struct Aspect<R> {
 
 /// An [`Aspect`] in columns, from which lanes are read where they are needed.
 #[derive(Clone, Copy, Debug)]
-pub struct AspectColumns([[[f32; LANES]; 3]; 7]);
+pub struct AspectColumns([[[f32; LANES]; 3]; 6]);
 
 impl AspectColumns {
     /// From lanes.
     #[inline]
     pub fn new(aspect: &Aspect<f32x8>) -> Self {
-        let Aspect { e1, e2, s, q, doubt, min, max } = *aspect;
-        Self([e1, e2, s, q, doubt, min, max].map(|v| [v.x.to_array(), v.y.to_array(), v.z.to_array()]))
+        let Aspect { e1, e2, s, q, min, max } = *aspect;
+        Self([e1, e2, s, q, min, max].map(|v| [v.x.to_array(), v.y.to_array(), v.z.to_array()]))
     }
 
     /// One of the lanes, in all lanes.
     #[inline(always)]
     pub fn splat(&self, lane: usize) -> Aspect<f32x8> {
-        let [e1, e2, s, q, doubt, min, max] = [0, 1, 2, 3, 4, 5, 6].map(|of: usize| {
+        let [e1, e2, s, q, min, max] = [0, 1, 2, 3, 4, 5].map(|of: usize| {
             let [x, y, z] = &self.0[of];
             vector3(f32x8::splat(x[lane]), f32x8::splat(y[lane]), f32x8::splat(z[lane]))
         });
-        Aspect { e1, e2, s, q, doubt, min, max }
+        Aspect { e1, e2, s, q, min, max }
     }
 }
 
@@ -181,10 +180,9 @@ impl<R: Real> TriangleLanes<R> {
     #[inline(always)]
     pub fn aspect(&self, org: Vector3<R>) -> Aspect<R> {
         let (e1, e2) = (self.v1 - self.v0, self.v2 - self.v0);
-        let (s, e) = (org - self.v0, e1.abs() + e2.abs());
-        let doubt = products(s.abs() + e, e).scale(R::splat(ULPS));
+        let s = org - self.v0;
         let (min, max) = (self.v0.min(self.v1).min(self.v2), self.v0.max(self.v1).max(self.v2));
-        Aspect { e1, e2, s, q: s.cross(e1), doubt, min, max }
+        Aspect { e1, e2, s, q: s.cross(e1), min, max }
     }
 
     /// Eight rays, eight triangles, or eight of each: (hit, t, u, v) of the lanes in `active`.
@@ -202,35 +200,54 @@ impl<R: Real> TriangleLanes<R> {
         ray: &RayLanes<R>,
         active: R::Mask,
     ) -> (R::Mask, R, R, R) {
-        let Aspect { e1, e2, s, q, doubt, min, max } = *aspect;
+        let Aspect { e1, e2, s, q, min, max } = *aspect;
         let p = ray.dir.cross(e2);
         let det = e1.dot(p);
         let u = s.dot(p);
         let v = ray.dir.dot(q);
         let w = det - u - v;
         let inside = u.min(v).min(w).max(-u.max(v).max(w));
-        let near = R::splat(-LEAST).le(self.edges * ray.margin + inside) & active;
+        let margin = self.edges * ray.margin + R::splat(LEAST);
+        let near = (-margin).le(inside) & active;
         if near.none() {
             return (near, u, u, v);
         }
-        let margin = ray.dir.abs().dot(doubt) + R::splat(LEAST);
-        let possible = (-margin).le(inside) & near;
         let certain = margin.lt(inside);
         let inverse = R::one() / det;
         // A zero added: rays from +0 and from −0 see the same aspect, and have the same t.
         let t = e2.dot(q) * inverse + R::zero();
-        let mut found = (possible & certain, t, u * inverse, v * inverse);
-        let doubtful = possible & !certain;
+        let mut found = (near & certain, t, u * inverse, v * inverse);
+        let doubtful = near & !certain;
         if doubtful.any() {
             // Copies, so that the originals need not be in memory for this.
             let (triangle, ray) = (*self, *ray);
-            found = triangle.ask_again(&ray, doubtful, found);
+            found = triangle.look_again(&ray, doubtful, inside, found);
         }
         let (hit, t, u, v) = found;
         let all = (R::splat(f32::NEG_INFINITY), R::splat(f32::INFINITY));
         let (low, high) = aabb::interval((min, max), (ray.org, ray.rdir), all);
         let t = high.min(low.max(t));
         (hit & low.le(high) & ray.t_near.lt(t) & t.le(ray.t_far), t, u, v)
+    }
+
+    /// Decides about lanes whose numerators are within the bound for all triangles: by their own margins, and
+    /// within these by [`crossing`].
+    #[cold]
+    #[inline(never)]
+    fn look_again(
+        &self,
+        ray: &RayLanes<R>,
+        lanes: R::Mask,
+        inside: R,
+        (hit, t, u, v): (R::Mask, R, R, R),
+    ) -> (R::Mask, R, R, R) {
+        let e = (self.v1 - self.v0).abs() + (self.v2 - self.v0).abs();
+        let a = (ray.org - self.v0).abs() + e;
+        let margin = ray.dir.abs().dot(products(a, e).scale(R::splat(ULPS))) + R::splat(LEAST);
+        let certain = margin.lt(inside) & lanes;
+        let found = (hit | certain, t, u, v);
+        let doubtful = (-margin).le(inside) & lanes & !certain;
+        if doubtful.any() { self.ask_again(ray, doubtful, found) } else { found }
     }
 
     /// Replaces the answers of some lanes by those of [`crossing`].

@@ -10,8 +10,8 @@ use super::{
     sweep::{self, SMALL},
 };
 
-/// References in a leaf, at most.
-pub const MAX_LEAF: usize = 4;
+/// References in a leaf, at most: those of a block.
+pub const MAX_LEAF: usize = 8;
 /// Subtrees of fewer references are built by one thread.
 pub(super) const PARALLEL: usize = 2048;
 /// Beyond this depth splits are by count alone, so that no input can make a deep tree.

@@ -18,8 +18,12 @@ use super::{
 };
 use crate::simd::{Bits, Real, f32x8, u32x8};
 
-/// Cost of testing a node's eight boxes, in tests of one primitive.
+/// Cost of testing a node's eight boxes, of going to a leaf and testing its block, and what each primitive there
+/// adds: nothing in a wave, whose lanes are the block's, and all of it in a packet. Found by trying: with a leaf
+/// that cost one for each primitive, scattered rays took 1.01 to 1.06 of the time.
 const NODE_COST: f32 = 2.0;
+const LEAF_COST: f32 = 1.0;
+const PRIMITIVE_COST: f32 = 0.3;
 /// Subtrees of fewer places are weighed by one thread.
 const PARALLEL: usize = 8192;
 
@@ -62,6 +66,10 @@ impl Choices {
 /// C(·, 1..=8), a lane each.
 type Costs = f32x8;
 
+fn leaf_cost(count: usize) -> f32 {
+    LEAF_COST + PRIMITIVE_COST * count as f32
+}
+
 /// Fills in the choices for the run of `nodes[0]`. Returns the costs and the number of references.
 fn weigh(nodes: &[Packed], choices: &mut [u32], references: &[Reference]) -> (Costs, usize) {
     let node = Binary::unpack(&nodes[0]);
@@ -69,7 +77,7 @@ fn weigh(nodes: &[Packed], choices: &mut [u32], references: &[Reference]) -> (Co
     if node.is_leaf() {
         let count = node.leaf_count();
         choices[0] = count as u32;
-        return (Costs::splat(area * count as f32), count);
+        return (Costs::splat(area * leaf_cost(count)), count);
     }
     let (left_nodes, right_nodes) = nodes[1..].split_at(node.right() - 1);
     let (choice, rest) = choices.split_first_mut().expect("a node has a choice");
@@ -84,9 +92,9 @@ fn weigh(nodes: &[Packed], choices: &mut [u32], references: &[Reference]) -> (Co
     let mut leaf_count = 0;
     if count <= MAX_LEAF {
         let run = &references[node.first as usize..][..count];
-        let leaf_cost = area * count as f32;
-        if leaf_cost <= single && run.iter().all(|reference| reference.class == run[0].class) {
-            (single, leaf_count) = (leaf_cost, count);
+        let leaf = area * leaf_cost(count);
+        if leaf <= single && run.iter().all(|reference| reference.class == run[0].class) {
+            (single, leaf_count) = (leaf, count);
         }
     }
     let single = Costs::splat(single);
