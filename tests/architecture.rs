@@ -49,6 +49,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("glam", &[""]),
     ("image", &["picture/"]),
     ("indicatif", &["cli/"]),
+    ("terminal_size", &["cli/"]),
     ("kuva", &["lobe/"]),
     ("libm", &["compare/", "math/", "light/", "compile/", "load/", "picture/"]),
     ("miette", &["cli/", "load/error.rs"]),

@@ -9,15 +9,16 @@ use serde::Serialize;
 
 use super::{
     console,
-    failure::{Failure, warn_of},
+    failure::Failure,
     memory,
     overrides::IntegratorName,
     quality::{QualityName, QualityOption},
-    quantity::{counted, grouped, mebibytes, time},
-    source::Source,
+    quantity::{self, counted, grouped, time},
+    source::{Source, warn_of_degenerate},
 };
 use crate::{
     compile::{Summary, TreeShape, compile_with},
+    load::Loaded,
     scene::{Integrator, Projection, SceneDescription},
     simd::cpu,
 };
@@ -38,9 +39,9 @@ pub(super) struct Arguments {
 
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (description, load_time) = arguments.source.load()?;
+    let (Loaded { description, origins, .. }, load_time) = arguments.source.load()?;
     let compiled = compile_with(&description, arguments.quality.quality())?;
-    warn_of_doubts(&description, compiled.summary().degenerate);
+    warn_of_degenerate(&origins, &compiled);
     let scene = arguments.source.path.display().to_string();
     let info = Info::new(scene, &description, (compiled.summary(), compiled.tree_shape()), load_time);
     if arguments.json { console::print_json(&info) } else { console::print(&info.to_string()) }
@@ -157,15 +158,6 @@ impl Info {
     }
 }
 
-/// Tells what is probably not meant.
-pub(super) fn warn_of_doubts(description: &SceneDescription, degenerate: u64) {
-    description.doubts().iter().for_each(warn_of);
-    if degenerate > 0 {
-        let triangles = counted(degenerate, "triangle");
-        warn_of(format!("{triangles} without area can't be hit and are left out"));
-    }
-}
-
 /// Sums of a tile at two nodes of their tree, and the picture: 32 bits a channel.
 fn film_bytes(description: &SceneDescription) -> u64 {
     let window = description.sensor.film.window();
@@ -214,7 +206,7 @@ impl fmt::Display for Info {
                     "{} nodes, {} deep, {}, {} quality",
                     grouped(self.bvh_nodes),
                     self.bvh_depth,
-                    mebibytes(self.bvh_bytes),
+                    quantity::memory(self.bvh_bytes),
                     self.quality
                 ),
             ),
@@ -229,8 +221,8 @@ impl fmt::Display for Info {
             (
                 "memory",
                 self.peak_memory_bytes
-                    .map_or("unknown".into(), |bytes| format!("{} at the peak", mebibytes(bytes)))
-                    + &format!(", and {} to render", mebibytes(self.film_bytes)),
+                    .map_or("unknown".into(), |bytes| format!("{} at the peak", quantity::memory(bytes)))
+                    + &format!(", and {} to render", quantity::memory(self.film_bytes)),
             ),
             ("film", format!("{} x {}", self.width, self.height)),
             ("samples", format!("{} a pixel, seed {}", self.samples_per_pixel, self.seed)),

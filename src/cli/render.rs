@@ -13,7 +13,6 @@ use clap::{Args, CommandFactory, ValueEnum, error::ErrorKind, value_parser};
 use super::{
     Cli, console, duration,
     failure::{Failure, warn_of},
-    info::warn_of_doubts,
     memory,
     metadata::{self, About},
     output::Output,
@@ -24,12 +23,13 @@ use super::{
     replay::{self, Replay},
     report::{Report, Sources},
     signals,
-    source::Source,
+    source::{Source, warn_of_degenerate},
     style::StyleOptions,
     threads::ThreadsOption,
 };
 use crate::{
     compile::compile_with,
+    load::Loaded,
     picture::{Format, save_with},
     render::{self, Coverage, Frame, Plan, Settings, Watch},
     scene::{Film, PixelFormat, SceneDescription, Sensor},
@@ -40,6 +40,8 @@ use share::ShardOptions;
 
 const PICTURE: &str = "Picture";
 const MACHINE: &str = "Machine (never changes a bit of the picture)";
+
+const REPORT: &str = "Report";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -125,15 +127,16 @@ pub(super) struct Arguments {
     no_sort: bool,
 
     /// No progress bar and no summary
-    #[arg(short, long)]
+    #[arg(short, long, help_heading = REPORT)]
     quiet: bool,
 
-    /// What a ray of each kind meets in the tree
-    #[arg(long, conflicts_with = "quiet")]
+    /// Counts the rays of one sample by kind: what they meet in the tree, full lanes, what sorting
+    /// does, how paths end
+    #[arg(long, help_heading = REPORT, conflicts_with = "quiet")]
     stats: bool,
 
     /// The summary as one JSON object on stdout
-    #[arg(long)]
+    #[arg(long, help_heading = REPORT)]
     json: bool,
 }
 
@@ -183,7 +186,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Load, compile, and one pixel by itself.
 fn numbers(arguments: &Arguments, pixel: [u32; 2]) -> Result<Replay, Failure> {
-    let (mut description, _) = arguments.source.load()?;
+    let (Loaded { mut description, .. }, _) = arguments.source.load()?;
     arguments.overrides().apply(&mut description);
     let Film { width, height, .. } = description.sensor.film;
     if pixel[0] >= width || pixel[1] >= height {
@@ -203,23 +206,24 @@ pub(super) fn check(arguments: &Arguments) -> Result<(), Failure> {
 
 /// The scene with everything that the command line says of it, the time it took to load, and what is to be
 /// rendered.
-fn planned(arguments: &Arguments, output: &Output) -> Result<(SceneDescription, Duration, Plan), Failure> {
-    let (mut description, load_time) = arguments.source.load()?;
-    arguments.overrides().apply(&mut description);
+fn planned(arguments: &Arguments, output: &Output) -> Result<(Loaded, Duration, Plan), Failure> {
+    let (mut loaded, load_time) = arguments.source.load()?;
+    let description = &mut loaded.description;
+    arguments.overrides().apply(description);
     description.aovs = arguments.aov.iter().map(|layer| layer.channel()).collect();
-    can_hold(output.format, &description)?;
+    can_hold(output.format, description)?;
     if let Some(option) = arguments.style.only_for_png().filter(|_| output.format != Format::Png) {
         warn_of(format!("{option} only changes a .png; the numbers of this file stay linear"));
     }
-    let plan = arguments.plan(&description, output.format)?;
-    Ok((description, load_time, plan))
+    let plan = arguments.plan(description, output.format)?;
+    Ok((loaded, load_time, plan))
 }
 
 /// Load, compile, render, save.
 fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage), Failure> {
-    let (description, load_time, plan) = planned(arguments, output)?;
+    let (Loaded { description, origins, .. }, load_time, plan) = planned(arguments, output)?;
     let scene = compile_with(&description, arguments.quality.quality())?;
-    warn_of_doubts(&description, scene.summary().degenerate);
+    warn_of_degenerate(&origins, &scene);
     let settings = arguments.settings();
     let facts = metadata::facts(&description);
     let file = arguments.source.path.file_name().unwrap_or_default().to_string_lossy();
@@ -247,7 +251,7 @@ fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage),
         settings,
         summary: scene.summary(),
         statistics: developed.statistics,
-        lesson: arguments.stats.then(|| Lesson::new(&scene)),
+        lesson: arguments.stats.then(|| Lesson::new(&scene, &developed.statistics.profile)),
         load_time,
         threads: rayon::current_num_threads(),
         peak_memory: memory::peak(),

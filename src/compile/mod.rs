@@ -18,6 +18,7 @@ use std::time::{Duration, Instant};
 
 pub use lights::envmap;
 pub use primitives::Primitives;
+pub use shapes::Degenerate;
 pub use surfaces::Surface;
 pub use tree::TreeShape;
 
@@ -67,6 +68,7 @@ pub struct Scene {
     /// What the camera sees besides.
     pub aovs: Vec<AovChannel>,
     summary: Summary,
+    degenerate: Vec<Degenerate>,
 }
 
 /// What was compiled, for people.
@@ -109,6 +111,11 @@ impl Scene {
     /// What was compiled.
     pub fn summary(&self) -> Summary {
         self.summary
+    }
+
+    /// Which shapes have triangles without area, which are left out: in the world, then in groups.
+    pub fn degenerate(&self) -> &[Degenerate] {
+        &self.degenerate
     }
 }
 
@@ -156,7 +163,7 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
     };
     let named = Named { materials: &material_ids, meshes: &meshes, metered };
     let mut lights = lights::without_surface(&description.emitters);
-    let shapes::Shapes { surfaces, mut references, degenerate, metered } =
+    let shapes::Shapes { surfaces, mut references, mut degenerate, metered } =
         shapes::compile(&description.shapes, &named, &mut lights)?;
     let first = surfaces.shape_of.len() as u32;
     let count = u64::from(first) + description.instances.len() as u64;
@@ -182,9 +189,9 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
 
     let upper = size_of_val(bvh.nodes()) as u64;
     let mut summary = Summary {
-        triangles: surfaces.triangles.len() as u64 - degenerate,
+        triangles: surfaces.triangles.len() as u64 - Degenerate::total(&degenerate),
         quadrics: surfaces.quadrics(),
-        degenerate,
+        degenerate: Degenerate::total(&degenerate),
         materials: materials.len() as u32,
         lights: lights.len() as u32,
         bvh_nodes: bvh.nodes().len() as u64,
@@ -193,6 +200,7 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
         quality,
         ..Summary::default()
     };
+    degenerate.extend(primitives.instances.degenerate());
     primitives.instances.add_to(&mut summary, upper as f64 / count.max(1) as f64);
     let environments = (0..lights.len()).filter(|&i| lights[i].is_environment());
     let environments = environments.map(|i| LightId(i as u32)).collect();
@@ -216,6 +224,7 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
         integrator: description.integrator.clone(),
         aovs: description.aovs.clone(),
         summary,
+        degenerate,
     })
 }
 

@@ -7,6 +7,7 @@ mod alpha;
 mod ao;
 mod aov;
 mod camera_rays;
+mod census;
 mod connections;
 mod departure;
 mod direct;
@@ -29,6 +30,7 @@ mod vertex;
 mod wavefront;
 mod whitted;
 
+pub use census::{Census, Crowd, Ends, census};
 pub use frame::{Coverage, Frame, Plan, Watch, tile_count};
 pub use irradiance::Receiver;
 pub use ray_classes::{Query, RayClass, ray_classes};

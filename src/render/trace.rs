@@ -3,7 +3,7 @@
 use super::connections::Connections;
 use super::rows::{Hits, Paths};
 use super::statistics::LaneUse;
-use crate::bvh::{Stream, Tracer, Way};
+use crate::bvh::{Stream, Tally, Tracer, Way};
 use crate::compile::Scene;
 use crate::geometry::{Hit, Rayx8};
 use crate::simd::Mask8;
@@ -52,11 +52,11 @@ impl Stream for Blocked<'_, '_> {
 }
 
 /// Finds the nearest hits of paths.
-pub(super) fn closest<'a>(
+pub(super) fn closest<'a, T: Tally>(
     scene: &Scene,
     paths: &Paths<'a>,
     hits: &mut Hits<'a>,
-    tracer: &mut Tracer,
+    tracer: &mut Tracer<T>,
 ) -> LaneUse {
     hits.resize(paths.len);
     scene.trace::<false, _, _>(&mut Nearest { paths, hits }, Way::Chosen, tracer);
@@ -64,7 +64,11 @@ pub(super) fn closest<'a>(
 }
 
 /// Takes the light from connections that anything blocks.
-pub(super) fn occluded(scene: &Scene, connections: &mut Connections, tracer: &mut Tracer) -> LaneUse {
+pub(super) fn occluded<T: Tally>(
+    scene: &Scene,
+    connections: &mut Connections,
+    tracer: &mut Tracer<T>,
+) -> LaneUse {
     let len = connections.len;
     scene.trace::<true, _, _>(&mut Blocked(connections), Way::Chosen, tracer);
     LaneUse::of_packets(len)

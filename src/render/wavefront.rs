@@ -10,9 +10,10 @@ use bumpalo::{Bump, collections::Vec as BumpVec};
 
 use super::aov::{AovIntegrator, Beside};
 use super::camera_rays::{self, Pixels};
+use super::census::{Census, Ends, Probe};
 use super::connections::Connections;
 use super::frame::Visit;
-use super::integrator::{Integrator, Outgoing, Path};
+use super::integrator::{End, Integrator, Outgoing, Path};
 use super::rows::{Hits, Packet, Paths, fill, reserve};
 use super::sort::{Sorter, for_each_unsorted_group};
 use super::statistics::{Stage, Statistics};
@@ -45,6 +46,8 @@ pub(super) struct Wavefront<'a, I> {
     weights: BumpVec<'a, f32x8>,
     /// What a pixel's paths have brought, four channels at a time, pixel after pixel.
     sums: BumpVec<'a, Quad>,
+    /// Looks on where rays are counted, not rendered.
+    probe: Option<Box<Probe>>,
 }
 
 /// Four channels, added by one instruction.
@@ -88,6 +91,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             },
             weights: BumpVec::new_in(arena),
             sums: BumpVec::new_in(arena),
+            probe: None,
         }
     }
 
@@ -128,6 +132,14 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
         self.sums.iter().flatten().copied().take(self.channels).collect()
     }
 
+    /// What one sample of a tile does.
+    pub(super) fn census(&mut self, tile: &Tile, sample: u32) -> Census {
+        self.probe = Some(Box::new(Probe::new()));
+        self.start(&Pixels::new(self.scene, tile), sample);
+        self.run(sample, &mut Statistics::default());
+        self.probe.take().map_or_else(Census::default, |probe| probe.finish())
+    }
+
     /// One path from each pixel.
     fn start(&mut self, pixels: &Pixels, sample: u32) {
         let len = pixels.places.len();
@@ -159,6 +171,9 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             } else {
                 self.trace(depth, statistics);
                 self.shade(depth, sample, statistics);
+                if let Some(probe) = &mut self.probe {
+                    probe.ends(&self.paths, &self.hits, &self.out.alive, self.out.branches);
+                }
             }
             self.connect(statistics);
             let start = Instant::now();
@@ -173,7 +188,11 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
         let start = Instant::now();
         let rays = if depth == 0 { &mut statistics.camera_rays } else { &mut statistics.bounce_rays };
         *rays += self.paths.len as u64;
-        statistics.trace_lanes += trace::closest(self.scene, &self.paths, &mut self.hits, &mut self.tracer);
+        let Self { scene, paths, hits, tracer, probe, .. } = self;
+        statistics.trace_lanes += match probe {
+            None => trace::closest(scene, paths, hits, tracer),
+            Some(probe) => probe.closest(scene, paths, hits, depth),
+        };
         statistics.spend(Stage::Trace, start);
     }
 
@@ -185,13 +204,13 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             let count = (paths.len - first as usize).min(LANES);
             statistics.shade_lanes.add(count as u32);
             let Packet { path, pixel, .. } = paths.packet(&slots, 0, sample);
-            integrator.begin(scene, &path, &mut Group { slots, count, pixel, out });
+            integrator.begin(scene, &path, &mut Group { slots, count, pixel, out, ends: None });
         }
     }
 
     fn shade(&mut self, depth: u32, sample: u32, statistics: &mut Statistics) {
         let start = Instant::now();
-        let Self { scene, integrator, lit, beside, paths, hits, keys, sorter, out, .. } = self;
+        let Self { scene, integrator, lit, beside, paths, hits, keys, sorter, out, probe, .. } = self;
         let beside = beside.as_ref().filter(|_| depth == 0);
         let miss = scene.materials.len() as u32;
         keys.clear();
@@ -202,13 +221,18 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
         if self.sort {
             sorter.sort(keys);
         }
+        if let Some(probe) = probe {
+            probe.groups(keys, scene.materials.len() + 1);
+        }
+        let mut ends = probe.as_deref_mut().map(|probe| &mut probe.census.ends);
         let start = statistics.spend(Stage::Sort, start);
         let lanes = &mut statistics.shade_lanes;
         let group = |key: u32, slots: &[u32]| {
             lanes.add(slots.len() as u32);
             let at = fill(slots);
             let Packet { org, dir, path, pixel, .. } = paths.packet(&at, depth, sample);
-            let mut group = Group { slots: at, count: slots.len(), pixel, out };
+            let ends = ends.as_deref_mut();
+            let mut group = Group { slots: at, count: slots.len(), pixel, out, ends };
             if key == miss {
                 integrator.miss(scene, &path, (org, dir), &mut group);
                 if let Some(beside) = beside {
@@ -235,7 +259,11 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     fn connect(&mut self, statistics: &mut Statistics) {
         let start = Instant::now();
         statistics.shadow_rays += self.out.connections.len as u64;
-        statistics.trace_lanes += trace::occluded(self.scene, &mut self.out.connections, &mut self.tracer);
+        let Self { scene, out: Outputs { connections, .. }, tracer, probe, .. } = self;
+        statistics.trace_lanes += match probe {
+            None => trace::occluded(scene, connections, tracer),
+            Some(probe) => probe.occluded(scene, connections),
+        };
         statistics.spend(Stage::Trace, start);
     }
 
@@ -271,6 +299,7 @@ struct Group<'g, 'a> {
     count: usize,
     pixel: u32x8,
     out: &'g mut Outputs<'a>,
+    ends: Option<&'g mut Ends>,
 }
 
 impl Outgoing<f32x8> for Group<'_, '_> {
@@ -309,6 +338,13 @@ impl Outgoing<f32x8> for Group<'_, '_> {
             self.out.alive[at as usize] = lanes >> i & 1 != 0;
         }
     }
+
+    #[inline]
+    fn end(&mut self, why: End, lanes: Mask8) {
+        if let Some(ends) = &mut self.ends {
+            ends.add(why, lanes.to_bitmask() & ((1 << self.count) - 1));
+        }
+    }
 }
 
 #[cfg(test)]
@@ -329,7 +365,8 @@ mod tests {
         out.clear(16, 1);
         let all = Mask8::splat(true);
         let (zero, one) = (Vec3x8::zero(), f32x8::splat(1.0));
-        let mut group = Group { slots: fill(&[3, 9]), count: 2, pixel: u32x8::splat(7), out: &mut out };
+        let mut group =
+            Group { slots: fill(&[3, 9]), count: 2, pixel: u32x8::splat(7), out: &mut out, ends: None };
         group.add(0, one);
         group.shadow(0, all, (zero, zero, one), zero);
         group.next(0, all, (zero, zero), &Path::start(u32x8::splat(1), 0));
