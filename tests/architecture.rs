@@ -50,6 +50,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("glam", &[""]),
     ("image", &["picture/"]),
     ("indicatif", &["cli/"]),
+    ("terminal_size", &["cli/"]),
     ("kuva", &["lobe/"]),
     ("libloading", &["denoise/library.rs"]),
     ("libm", &["compare/", "math/", "light/", "compile/", "load/", "picture/"]),

@@ -6,7 +6,7 @@ mod program;
 
 use std::{fs, path::Path};
 
-use program::{command, fails, folder, packlight, path, stderr, stdout};
+use program::{command, fails, folder, packlight, path, stderr, stdout, triangle};
 
 #[test]
 fn help_is_on_stdout_with_examples_and_exit_codes() {
@@ -101,13 +101,6 @@ fn a_refused_scene_is_plain_text_in_a_pipe() {
     let message = stderr(&output);
     assert!(message.contains("broken.xml"), "{message}");
     assert!(message.is_ascii() && !message.contains('\x1b'), "{message}");
-}
-
-/// A scene that every stage can do: one triangle, one light.
-fn triangle(folder: &Path) -> String {
-    let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-    fs::write(folder.join("triangle.obj"), mesh).expect("writable");
-    path(folder, "triangle.obj")
 }
 
 #[test]
@@ -320,81 +313,16 @@ fn a_picture_is_reduced_to_nine_coefficients() {
 }
 
 #[test]
-fn layers_stand_beside_the_picture_under_names_that_others_know() {
-    let folder = folder("layers");
-    let scene = triangle(&folder);
-    let (plain, layered) = (path(&folder, "plain.exr"), path(&folder, "layered.exr"));
-    let size = ["--width", "16", "--spp", "2", "--quiet"];
-    let render = |out: &str, more: &[&str]| {
-        let output = packlight(&[&["render", &scene, "-o", out], &size[..], more].concat());
-        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    };
-    render(&plain, &[]);
-    render(&layered, &["--aov", "albedo,normal,depth", "--exr-type", "half", "--exr-compression", "piz"]);
-    let bytes = fs::read(&layered).expect("it was written");
-    for channel in ["B", "G", "R", "albedo.R", "depth.Z", "normal.X"] {
-        let name = [channel.as_bytes(), b"\0"].concat();
-        assert!(bytes.windows(name.len()).any(|window| window == name), "{channel}");
-    }
-    // The light is what it is without them: halves of the same numbers.
-    let read = |path: &str| {
-        packlight::picture::decode(path.as_ref(), packlight::picture::Encoding::Raw).expect("readable")
-    };
-    let (plain, layered) = (read(&plain), read(&layered));
-    for (a, b) in plain.channels.iter().zip(&layered.channels) {
-        assert!(a.samples.iter().zip(&b.samples).all(|(a, b)| (a - b).abs() <= 1e-3 * a.abs()));
-    }
-    let png = path(&folder, "a.png");
-    fails(&["render", &scene, "-o", &png, "--aov", "depth"], 2, "only an .exr");
-    fails(&["render", &scene, "-o", &png, "--aov", "dept"], 2, "depth");
-}
-
-#[test]
-fn files_say_what_they_show_and_no_more_than_asked() {
-    let folder = folder("metadata");
-    let scene = triangle(&folder);
-    let said = |more: &[&str]| {
-        let out = path(&folder, "a.exr");
-        let arguments =
-            ["render", &scene, "-o", &out, "--width", "8", "--spp", "3", "--seed", "5", "--quiet"];
-        let output = packlight(&[&arguments[..], more].concat());
-        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-        packlight::picture::exr_attributes(&fs::read(&out).expect("it was written"))
-    };
-    let picture = said(&[]);
-    for (name, value) in
-        [("packlight.scene", "triangle.obj"), ("packlight.samples", "3"), ("packlight.seed", "5")]
-    {
-        assert!(picture.contains(&(name.into(), value.into())), "{name} in {picture:?}");
-    }
-    assert!(!picture.iter().any(|(name, _)| name == "packlight.seconds"));
-    let all = said(&["--metadata", "all"]);
-    assert!(all.iter().any(|(name, _)| name == "packlight.seconds"));
-    assert!(said(&["--metadata", "none"]).iter().all(|(name, _)| !name.starts_with("packlight.")));
-}
-
-#[test]
-fn tone_curves_change_a_png_and_nothing_else() {
-    let folder = folder("tonemap");
-    let scene = triangle(&folder);
-    let shown = |tone: &str| {
-        let out = path(&folder, "a.png");
-        let arguments =
-            ["render", &scene, "-o", &out, "--width", "16", "--spp", "2", "--quiet", "--tonemap", tone];
-        assert_eq!(packlight(&arguments).status.code(), Some(0));
-        fs::read(&out).expect("it was written")
-    };
-    let pictures = ["none", "aces", "agx", "reinhard"].map(shown);
-    for (i, one) in pictures.iter().enumerate() {
-        assert!(pictures[..i].iter().all(|other| other != one), "{i}");
-    }
-}
-
-#[test]
 fn shells_and_man_are_told_every_command() {
-    for shell in ["bash", "zsh", "fish"] {
+    let scripts = [
+        ("bash", "complete -F _packlight"),
+        ("zsh", "#compdef packlight"),
+        ("fish", "complete -c packlight"),
+    ];
+    for (shell, how) in scripts {
         let output = packlight(&["completions", shell]);
         assert_eq!(output.status.code(), Some(0));
+        assert!(stdout(&output).contains(how), "{how} for {shell}");
         for word in ["render", "merge", "compare", "shard"] {
             assert!(stdout(&output).contains(word), "{word} for {shell}");
         }
@@ -405,22 +333,4 @@ fn shells_and_man_are_told_every_command() {
     let page = fs::read_to_string(folder.join("packlight-render.1")).expect("there is a page");
     assert!(page.contains(".TH") && page.contains("\\-\\-checkpoint"), "{page}");
     assert!(folder.join("packlight.1").exists());
-}
-
-#[test]
-fn what_is_probably_not_meant_is_told() {
-    let folder = folder("doubts");
-    let scene = path(&folder, "doubts.xml");
-    let text = "<scene version='3.0.0'><integrator type='path'/><sensor type='perspective'/>
-        <shape type='sphere' id='ball'/>
-        <emitter type='point'><rgb name='intensity' value='0'/></emitter></scene>";
-    fs::write(&scene, text).expect("a scene can be written");
-    let output = packlight(&["info", &scene]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    for part in ["`point` emitter has no power", "the camera is inside of shape `ball`"] {
-        assert!(stderr(&output).contains(part), "{part} is not in\n{}", stderr(&output));
-    }
-    for part in ["surface area heuristic", "diffuse", "digest"] {
-        assert!(stdout(&output).contains(part), "{part} is not in\n{}", stdout(&output));
-    }
 }

@@ -146,10 +146,10 @@ fn colours_that_srgb_lacks_are_clamped_aloud() {
     let body = "<bsdf type='diffuse' id='a'><spectrum name='reflectance' value='400:0.04, 500:0.05, 600:0.9, 700:0.99'/></bsdf>
         <shape type='cube'><ref id='a'/></shape>
         <emitter type='constant'><spectrum name='radiance' value='450:2,550:3'/></emitter>";
-    let Loaded { description, warnings } = load_files(&[("main.xml", &scene(body))]).expect("it loads");
+    let Loaded { description, warnings, .. } = load_files(&[("main.xml", &scene(body))]).expect("it loads");
     let red = reflectance(&description);
     assert!((red - Rgb::new(1.0, 0.394_803, 0.0)).length() < 1e-3, "{red}");
-    let of = |part: &str| warnings.iter().filter(|warning| warning.message.contains(part)).count();
+    let of = |part: &str| warnings.iter().filter(|warning| warning.message().contains(part)).count();
     assert_eq!(of("`reflectance` is the colour (1.1"), 1, "{warnings:?}");
     assert_eq!(of("`radiance` is the colour (-1.1"), 1, "{warnings:?}");
 }
@@ -201,9 +201,9 @@ fn a_moment_is_the_integrator_inside_it() {
     let text = |integrator: &str| format!("<scene version='3.0.0'>{sensor}\n{integrator}</scene>");
     let inside = "<integrator type='direct'><boolean name='hide_emitters' value='true'/></integrator>";
     let moment = text(&format!("<integrator type='moment'>{inside}</integrator>"));
-    let Loaded { description, warnings } = load_files(&[("main.xml", &moment)]).expect("it loads");
+    let Loaded { description, warnings, .. } = load_files(&[("main.xml", &moment)]).expect("it loads");
     assert_eq!(description.integrator, Integrator::Direct { hide_emitters: true });
-    assert!(warnings.iter().any(|w| w.message.contains("`moment` is read as the `direct` inside it")));
+    assert!(warnings.iter().any(|w| w.message().contains("`moment` is read as the `direct` inside it")));
     for (integrator, expected) in [
         ("<integrator type='moment'/>", "main.xml:2:2: the integrator `moment` has no integrator inside"),
         (

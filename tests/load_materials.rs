@@ -372,7 +372,7 @@ fn a_ramp_that_makes_light_is_warned_of() {
     let loaded = load_in(folder().path(), xml).unwrap_or_else(|e| panic!("{e}"));
     let Material::Toon { ramp, .. } = &loaded.description.materials[0] else { panic!() };
     assert_eq!(**ramp, Ramp::Steps(vec![Stop { cos: 0.1, color: Rgb::new(1.0, 0.5, 0.2) }]));
-    let warnings: Vec<&str> = loaded.warnings.iter().map(|warning| warning.message.as_str()).collect();
+    let warnings: Vec<&str> = loaded.warnings.iter().map(packlight::load::Warning::message).collect();
     assert_eq!(warnings, ["the ramp reflects 1.80 times the light that arrives, before `reflectance`"]);
 }
 

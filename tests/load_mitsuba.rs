@@ -47,7 +47,7 @@ fn assert_refused(body: &str, expected: &str) {
 
 fn warnings(text: &str) -> Vec<String> {
     let loaded = load_text_with(text, &[]).expect(text);
-    loaded.warnings.iter().map(|w| w.message.clone()).collect()
+    loaded.warnings.iter().map(|w| w.message().to_owned()).collect()
 }
 
 #[test]
@@ -293,7 +293,7 @@ fn environments_are_pictures_that_may_be_turned() {
     assert!((*to_world * glam::DVec3::Z - glam::DVec3::X).length() < 1e-12);
     let holed = read("hole.exr", "").unwrap().warnings;
     assert!(
-        holed.iter().any(|w| w.message == "negative values in the picture (1) are taken as 0"),
+        holed.iter().any(|w| w.message() == "negative values in the picture (1) are taken as 0"),
         "{holed:?}"
     );
     for (file, more, expected) in [

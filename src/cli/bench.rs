@@ -20,7 +20,7 @@ use super::{
 use crate::{
     compile::{Scene, compile_with},
     geometry::ray_file::{RayFile, encode},
-    load::load_mesh,
+    load::{Loaded, load_mesh},
     render::{Query, RayClass, measure, ray_classes},
     scene::{Geometry, Material, MaterialIndex, SceneDescription, Shape},
 };
@@ -138,7 +138,7 @@ impl Arguments {
 
     fn describe(&self) -> Result<SceneDescription, Failure> {
         if let Some(path) = &self.scene {
-            let (description, _) = Source::new(path.clone(), self.defines.clone()).load()?;
+            let (Loaded { description, .. }, _) = Source::new(path.clone(), self.defines.clone()).load()?;
             return Ok(description);
         }
         let (mesh, warnings) = load_mesh(self.mesh.as_deref().unwrap_or("".as_ref()))?;

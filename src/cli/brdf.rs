@@ -27,8 +27,9 @@ const WHICH: &str = "Which material";
 const WHAT: &str = "What is made of it";
 
 const AFTER_HELP: &str = "\
-MODEL is a bsdf of the scene format on one line, plugin:name=value,name=value. A colour is three numbers
-with blanks between them; file names are relative to the working directory.
+MODEL is a bsdf of the scene format on one line, plugin:name=value,name=value. A colour
+is three numbers with blanks between them; file names are relative to the working
+directory.
 
 Examples:
   packlight brdf \"roughconductor:alpha=0.3,material=Au\" -o lobe.svg

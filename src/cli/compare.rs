@@ -9,7 +9,7 @@ use super::{
     console,
     failure::Failure,
     output::Output,
-    quantity::{counted, grouped},
+    quantity::{counted, grouped, significant},
 };
 use crate::{
     compare::{difference, false_colours, flip_hdr, flip_ldr},
@@ -126,8 +126,8 @@ impl fmt::Display for Comparison {
         let ratio = |ratio: Option<f64>| ratio.map_or("-".to_owned(), |ratio| format!("{ratio:.6}"));
         let [r, g, b] = self.mean_ratio.map(ratio);
         writeln!(f, "  mean ratio  {r} {g} {b}")?;
-        writeln!(f, "  relMSE      {:.6e}", self.rel_mse)?;
-        writeln!(f, "  RMSE        {:.6e}, at most {:.6e}", self.rmse, self.largest)?;
+        writeln!(f, "  relMSE      {}", significant(self.rel_mse))?;
+        writeln!(f, "  RMSE        {}, at most {}", significant(self.rmse), significant(self.largest))?;
         writeln!(f, "  FLIP        {:.6} ({})", self.flip, self.flip_kind)?;
         writeln!(f, "  different   {} numbers", grouped(self.different_numbers))?;
         if self.pixels_not_finite > 0 {

@@ -5,9 +5,10 @@ use std::{
     io::{IsTerminal, Write, stderr},
 };
 
-use miette::{GraphicalReportHandler, GraphicalTheme};
+use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
+use terminal_size::{Width, terminal_size_of};
 
-use super::exit;
+use super::{exit, quantity::counted};
 use crate::{
     compile::CompileError,
     load::{LoadError, Warning},
@@ -15,7 +16,12 @@ use crate::{
 };
 
 /// Wide enough for a path and a sentence, narrow enough to read.
-const REPORT_WIDTH: usize = 100;
+const MAX_WIDTH: usize = 100;
+const MIN_WIDTH: usize = 20;
+/// Away from a terminal a sentence is one line, to be searched for.
+const ENDLESS: usize = 1 << 20;
+/// More than this of them are not read.
+const MAX_WARNINGS: usize = 20;
 
 /// Why a command stopped.
 #[derive(Debug)]
@@ -45,8 +51,8 @@ impl Failure {
     pub(super) fn tell(&self) {
         match self {
             Self::Usage(error) => drop(error.print()),
-            Self::Scene(error) => tell(&report(error, theme(stderr().is_terminal(), no_color()))),
-            Self::Sentence(sentence) => tell(&format!("error: {sentence}\n")),
+            Self::Scene(error) => tell_report(&**error),
+            Self::Sentence(sentence) => tell(&format!("{} {sentence}\n", headed("error:", RED))),
             Self::Stopped(sentence) => tell(&format!("{sentence}\n")),
         }
     }
@@ -78,14 +84,27 @@ impl From<PictureError> for Failure {
 
 /// Warnings go to stderr, so that stdout stays what was asked for.
 pub(super) fn warn(warnings: &[Warning]) {
-    for warning in warnings {
-        warn_of(warning);
+    for warning in &warnings[..warnings.len().min(MAX_WARNINGS)] {
+        tell_report(warning);
+    }
+    if let Some(more @ 1..) = warnings.len().checked_sub(MAX_WARNINGS) {
+        warn_of(format!("and {}", counted(more as u64, "other warning")));
     }
 }
 
 /// A warning that is not about a file.
 pub(super) fn warn_of(warning: impl Display) {
-    tell(&format!("warning: {warning}\n"));
+    tell(&format!("{} {warning}\n", headed("warning:", YELLOW)));
+}
+
+// As in the reports about files.
+const RED: u8 = 31;
+const YELLOW: u8 = 33;
+
+/// The word that a sentence begins with, in a colour where there are any.
+fn headed(word: &str, colour: u8) -> String {
+    let coloured = stderr().is_terminal() && !no_color();
+    if coloured { format!("\x1b[{colour}m{word}\x1b[0m") } else { word.to_owned() }
 }
 
 fn tell(text: &str) {
@@ -98,24 +117,34 @@ fn no_color() -> bool {
     std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty())
 }
 
+/// The words stand where signs would, so that they can be searched for.
 fn theme(terminal: bool, no_color: bool) -> GraphicalTheme {
-    match (terminal, no_color) {
+    let mut theme = match (terminal, no_color) {
         (false, _) => GraphicalTheme::none(),
         (true, true) => GraphicalTheme::unicode_nocolor(),
         (true, false) => GraphicalTheme::unicode(),
-    }
+    };
+    theme.characters.error = "error:".into();
+    theme.characters.warning = "warning:".into();
+    theme
 }
 
-fn report(error: &LoadError, theme: GraphicalTheme) -> String {
+fn tell_report(told: &dyn Diagnostic) {
+    let width = terminal_size_of(stderr())
+        .map_or(ENDLESS, |(Width(columns), _)| usize::from(columns).clamp(MIN_WIDTH, MAX_WIDTH));
+    tell(&report(told, theme(stderr().is_terminal(), no_color()), width));
+}
+
+fn report(told: &dyn Diagnostic, theme: GraphicalTheme, width: usize) -> String {
     let handler = GraphicalReportHandler::new_themed(theme)
-        .with_width(REPORT_WIDTH)
+        .with_width(width)
         .with_break_words(false)
         .with_links(false)
         .without_syntax_highlighting();
     let mut text = String::new();
-    match handler.render_report(&mut text, error) {
-        Ok(()) => text,
-        Err(_) => format!("error: {error}\n"),
+    match handler.render_report(&mut text, told) {
+        Ok(()) => text.trim_start().to_owned(),
+        Err(_) => format!("{told}\n"),
     }
 }
 
@@ -133,7 +162,7 @@ mod tests {
 
     #[test]
     fn away_from_a_terminal_a_report_is_plain_ascii() {
-        let text = report(&error(), theme(false, false));
+        let text = report(&error(), theme(false, false), ENDLESS);
         assert!(text.is_ascii() && !text.contains('\x1b'), "{text}");
         for part in ["a.xml:2:4: unknown element <shap>", "did you mean <shape>?", "<shap/>"] {
             assert!(text.contains(part), "{part} is not in\n{text}");
@@ -141,9 +170,19 @@ mod tests {
     }
 
     #[test]
+    fn a_sentence_is_as_wide_as_the_terminal_and_elsewhere_one_line() {
+        let long = "word ".repeat(60);
+        let error = LoadError::new(Path::new("a.xml"), long.trim());
+        assert_eq!(report(&error, theme(false, false), ENDLESS).trim_end().lines().count(), 1);
+        let narrow = report(&error, theme(true, true), 50);
+        assert!(narrow.lines().count() > 6, "{narrow}");
+        assert!(narrow.lines().all(|line| line.chars().count() <= 50), "{narrow}");
+    }
+
+    #[test]
     fn no_color_is_honoured_on_a_terminal() {
-        assert!(!report(&error(), theme(true, true)).contains('\x1b'));
-        assert!(report(&error(), theme(true, false)).contains('\x1b'));
+        assert!(!report(&error(), theme(true, true), MAX_WIDTH).contains('\x1b'));
+        assert!(report(&error(), theme(true, false), MAX_WIDTH).contains('\x1b'));
     }
 
     #[test]

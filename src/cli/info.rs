@@ -9,15 +9,16 @@ use serde::Serialize;
 
 use super::{
     console,
-    failure::{Failure, warn_of},
+    failure::Failure,
     memory::{self, Expected},
     overrides::IntegratorName,
     quality::{QualityName, QualityOption},
-    quantity::{counted, grouped, mebibytes, time},
-    source::Source,
+    quantity::{self, counted, grouped, time},
+    source::{Source, warn_of_degenerate},
 };
 use crate::{
     compile::{Summary, TreeShape, compile_with},
+    load::Loaded,
     render::Conditions,
     scene::{Integrator, Projection, SceneDescription},
     simd::cpu,
@@ -39,12 +40,12 @@ pub(super) struct Arguments {
 
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (description, load_time) = arguments.source.load()?;
+    let (Loaded { description, origins, .. }, load_time) = arguments.source.load()?;
     let quality = arguments.quality.quality();
     let conditions = Conditions { quality, threads: rayon::current_num_threads(), keeps_sums: false };
     let expected = Expected::new(&description, &conditions);
     let compiled = compile_with(&description, quality)?;
-    warn_of_doubts(&description, compiled.summary().degenerate);
+    warn_of_degenerate(&origins, &compiled);
     let scene = arguments.source.path.display().to_string();
     let compiled = (compiled.summary(), compiled.tree_shape());
     let info = Info::new(scene, &description, compiled, &expected, load_time);
@@ -169,17 +170,8 @@ impl Info {
 
 impl Info {
     fn parts(&self) -> String {
-        let part = |&(name, bytes): &(&str, u64)| format!("{name} {}", mebibytes(bytes));
+        let part = |&(name, bytes): &(&str, u64)| format!("{name} {}", quantity::memory(bytes));
         self.memory_parts_bytes.iter().map(part).collect::<Vec<_>>().join(", ")
-    }
-}
-
-/// Tells what is probably not meant.
-pub(super) fn warn_of_doubts(description: &SceneDescription, degenerate: u64) {
-    description.doubts().iter().for_each(warn_of);
-    if degenerate > 0 {
-        let triangles = counted(degenerate, "triangle");
-        warn_of(format!("{triangles} without area can't be hit and are left out"));
     }
 }
 
@@ -223,7 +215,7 @@ impl fmt::Display for Info {
                     "{} nodes, {} deep, {}, {} quality",
                     grouped(self.bvh_nodes),
                     self.bvh_depth,
-                    mebibytes(self.bvh_bytes),
+                    quantity::memory(self.bvh_bytes),
                     self.quality
                 ),
             ),
@@ -238,8 +230,8 @@ impl fmt::Display for Info {
             (
                 "memory",
                 self.peak_memory_bytes
-                    .map_or("unknown".into(), |bytes| format!("{} at the peak", mebibytes(bytes)))
-                    + &format!(", about {} to render", mebibytes(self.memory_budget_bytes)),
+                    .map_or("unknown".into(), |bytes| format!("{} at the peak", quantity::memory(bytes)))
+                    + &format!(", about {} to render", quantity::memory(self.memory_budget_bytes)),
             ),
             ("", self.parts()),
             ("film", format!("{} x {}", self.width, self.height)),

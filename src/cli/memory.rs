@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::{failure::Failure, quantity::mebibytes};
+use super::{failure::Failure, quantity};
 use crate::{
     render::{Budget, Conditions},
     scene::SceneDescription,
@@ -53,11 +53,11 @@ impl Expected {
     }
 
     fn refusal(&self, limit: u64) -> String {
-        let has = |name, bytes| format!("{name} {}", mebibytes(bytes));
+        let has = |name, bytes| format!("{name} {}", quantity::memory(bytes));
         let need = format!(
             "rendering takes about {}, more than the {} of --memory-limit",
-            mebibytes(self.peak()),
-            mebibytes(limit)
+            quantity::memory(self.peak()),
+            quantity::memory(limit)
         );
         if self.loading > self.budget.peak() {
             return format!(

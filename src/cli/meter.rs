@@ -18,6 +18,7 @@ use super::{
 };
 use crate::{
     compile::compile_with,
+    load::Loaded,
     render::{Conditions, Receiver, Settings, meter},
 };
 
@@ -68,7 +69,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn measure(arguments: &Arguments) -> Result<Reading, Failure> {
-    let (mut description, _) = arguments.source.load()?;
+    let (Loaded { mut description, .. }, _) = arguments.source.load()?;
     let sampler = &mut description.sensor.sampler;
     sampler.seed = arguments.seed.unwrap_or(sampler.seed);
     let quality = arguments.quality.quality();
@@ -122,10 +123,17 @@ impl fmt::Display for Reading {
         }
         for (band, i) in ["red", "green", "blue"].into_iter().zip(0..) {
             let (mean, error) = (self.irradiance_w_m2[i], self.standard_error_w_m2[i]);
-            writeln!(f, "  {band:<6} {mean:.6} ± {error:.6} W/m²")?;
+            let places = places(mean, error);
+            writeln!(f, "  {band:<6} {mean:.places$} ± {error:.places$} W/m²")?;
         }
         writeln!(f, "  {} samples; ± is one standard error", grouped(self.samples))
     }
+}
+
+/// Digits behind the point, so that of an error two count, and of a mean without one six.
+fn places(mean: f64, error: f64) -> usize {
+    let (number, digits) = if error > 0.0 { (error, 2.0) } else { (mean.abs(), 6.0) };
+    if number > 0.0 { (digits - 1.0 - number.log10().floor()).clamp(0.0, 12.0) as usize } else { 0 }
 }
 
 fn vector(argument: &str) -> Result<Vec3, String> {
@@ -145,6 +153,20 @@ fn direction(argument: &str) -> Result<Vec3, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_have_the_digits_that_count() {
+        for (mean, error, shown) in [
+            (1.570_926, 0.000_14, 5),
+            (0.031_105, 3.1e-8, 9),
+            (812.3, 14.0, 0),
+            (25.0, 0.0, 4),
+            (0.0, 0.0, 0),
+            (1.0, 1e-30, 12),
+        ] {
+            assert_eq!(places(mean, error), shown, "{mean} ± {error}");
+        }
+    }
 
     #[test]
     fn three_numbers_are_a_place() {

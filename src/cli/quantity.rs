@@ -37,14 +37,30 @@ pub(super) fn time(duration: Duration) -> String {
     }
 }
 
-/// `12.0 MiB`.
-pub(super) fn mebibytes(bytes: u64) -> String {
-    format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20))
+/// `850 bytes`, `4.2 KiB`, `12.0 MiB`, `3.3 GiB`.
+pub(super) fn memory(bytes: u64) -> String {
+    let of = |power: u32| bytes as f64 / 1024f64.powi(power as i32);
+    match bytes.checked_ilog2().unwrap_or(0) / 10 {
+        0 => counted(bytes, "byte"),
+        1 => format!("{:.1} KiB", of(1)),
+        2 => format!("{:.1} MiB", of(2)),
+        _ => format!("{:.1} GiB", of(3)),
+    }
 }
 
 /// Millions a second; 0 where no time passed.
 pub(super) fn mega_per_second(n: u64, time: Duration) -> f64 {
     if time.is_zero() { 0.0 } else { n as f64 * 1e-6 / time.as_secs_f64() }
+}
+
+/// Five digits that count, with a power of ten only where there would be many noughts.
+pub(super) fn significant(x: f64) -> String {
+    let power = if x == 0.0 { 0.0 } else { x.abs().log10().floor() };
+    if !x.is_finite() || !(-4.0..6.0).contains(&power) {
+        return format!("{x:.4e}");
+    }
+    let places = (4.0 - power).max(0.0) as usize;
+    format!("{x:.places$}")
 }
 
 #[cfg(test)]
@@ -59,6 +75,21 @@ mod tests {
     }
 
     #[test]
+    fn five_digits_count() {
+        for (x, text) in [
+            (0.0, "0.0000"),
+            (1.147_496, "1.1475"),
+            (-0.002_898_577, "-0.0028986"),
+            (123_456.7, "123457"),
+            (2.5e-9, "2.5000e-9"),
+            (3e30, "3.0000e30"),
+            (f64::NAN, "NaN"),
+        ] {
+            assert_eq!(significant(x), text);
+        }
+    }
+
+    #[test]
     fn one_is_singular() {
         assert_eq!(counted(1_u32, "light"), "1 light");
         assert_eq!(counted(0_u32, "light"), "0 lights");
@@ -69,6 +100,19 @@ mod tests {
         for (millis, text) in [(0.85, "850 µs"), (12.5, "12.5 ms"), (3270.0, "3.27 s"), (245e3, "4 min 05 s")]
         {
             assert_eq!(time(Duration::from_secs_f64(millis * 1e-3)), text);
+        }
+    }
+
+    #[test]
+    fn bytes_are_read_in_their_own_unit() {
+        for (bytes, text) in [
+            (0, "0 bytes"),
+            (1023, "1,023 bytes"),
+            (1536, "1.5 KiB"),
+            (3 << 20, "3.0 MiB"),
+            (5 << 30, "5.0 GiB"),
+        ] {
+            assert_eq!(memory(bytes), text);
         }
     }
 

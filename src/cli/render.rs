@@ -19,7 +19,6 @@ use clap::{Args, CommandFactory, ValueEnum, error::ErrorKind, value_parser};
 use super::{
     Cli, console, duration,
     failure::{Failure, warn_of},
-    info::warn_of_doubts,
     memory::{self, MemoryOption},
     metadata,
     output::{Output, check_writable},
@@ -29,13 +28,14 @@ use super::{
     replay::{self, Replay},
     report::{Report, Sources},
     signals,
-    source::Source,
+    source::{Source, warn_of_degenerate},
     style::StyleOptions,
     threads::ThreadsOption,
     way::RouteName,
 };
 use crate::{
     compile::compile_with,
+    load::Loaded,
     picture::Format,
     render::{self, Coverage, Settings, Watch},
     scene::{AovChannel, Film},
@@ -48,6 +48,8 @@ use share::ShardOptions;
 
 const PICTURE: &str = "Picture";
 const MACHINE: &str = "Machine (never changes a bit of the picture)";
+
+const REPORT: &str = "Report";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -160,15 +162,16 @@ pub(super) struct Arguments {
     no_sort: bool,
 
     /// No progress bar and no summary
-    #[arg(short, long)]
+    #[arg(short, long, help_heading = REPORT)]
     quiet: bool,
 
-    /// What a ray of each kind meets in the tree
-    #[arg(long, conflicts_with = "quiet")]
+    /// Counts the rays of one sample by kind: what they meet in the tree, full lanes, what sorting
+    /// does, how paths end
+    #[arg(long, help_heading = REPORT, conflicts_with = "quiet")]
     stats: bool,
 
     /// The summary as one JSON object on stdout
-    #[arg(long)]
+    #[arg(long, help_heading = REPORT)]
     json: bool,
 }
 
@@ -221,7 +224,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Load, compile, and one pixel by itself.
 fn numbers(arguments: &Arguments, pixel: [u32; 2]) -> Result<Replay, Failure> {
-    let (mut description, _) = arguments.source.load()?;
+    let (Loaded { mut description, .. }, _) = arguments.source.load()?;
     arguments.overrides().apply(&mut description);
     let Film { width, height, .. } = description.sensor.film;
     if pixel[0] >= width || pixel[1] >= height {
@@ -241,10 +244,11 @@ pub(super) fn check(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Load, compile, render, save.
 fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage), Failure> {
-    let Planned { description, load_time, plan, memory } = planned(arguments, output)?;
+    let Planned { loaded: Loaded { description, origins, .. }, load_time, plan, memory } =
+        planned(arguments, output)?;
     let denoiser = arguments.denoise.then(denoised::load).transpose()?;
     let scene = compile_with(&description, arguments.quality.quality())?;
-    warn_of_doubts(&description, scene.summary().degenerate);
+    warn_of_degenerate(&origins, &scene);
     let settings = arguments.settings();
     let facts = metadata::facts(&description);
     let file = arguments.source.path.file_name().unwrap_or_default().to_string_lossy();
@@ -271,8 +275,8 @@ fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage),
         coverage,
         settings,
         summary: scene.summary(),
+        lesson: arguments.stats.then(|| Lesson::new(&scene, &statistics.profile)),
         statistics,
-        lesson: arguments.stats.then(|| Lesson::new(&scene)),
         denoised,
         load_time,
         threads: rayon::current_num_threads(),

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::{
     overrides::IntegratorName,
-    quantity::{counted, grouped, mebibytes, mega, mega_per_second, time},
+    quantity::{counted, grouped, mega, mega_per_second, memory, time},
     render::{denoised::Denoised, lesson::Lesson},
 };
 use crate::{
@@ -240,7 +240,7 @@ impl fmt::Display for Report {
                 let [trace, shade] = [self.lane_use.trace, self.lane_use.shade].map(|used| 100.0 * used);
                 writeln!(
                     f,
-                    "  lanes    {trace:.1} % at work in trace, {shade:.1} % in shade; {}",
+                    "  lanes    {trace:.1} % at work in trace, {shade:.1} % in shade\n           {}",
                     self.lanes
                 )?;
             }
@@ -250,7 +250,7 @@ impl fmt::Display for Report {
             write!(f, "{stats}")?;
         }
         if let Some(bytes) = self.peak_memory_bytes {
-            writeln!(f, "  memory   {} at the peak", mebibytes(bytes))?;
+            writeln!(f, "  memory   {} at the peak", memory(bytes))?;
         }
         Ok(())
     }

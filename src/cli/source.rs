@@ -7,16 +7,19 @@ use std::{
 
 use clap::Args;
 
-use super::failure::{Failure, warn};
+use super::{
+    failure::{Failure, warn},
+    quantity::counted,
+};
 use crate::{
-    load::{LoadOptions, load},
-    scene::SceneDescription,
+    compile::Scene,
+    load::{LoadOptions, Loaded, Origins, load},
 };
 
 /// Arguments of every command that loads a scene.
 #[derive(Clone, Debug, Args)]
 pub(super) struct Source {
-    /// Scene file (.xml, as Mitsuba 3 reads it) a bare mesh (.obj, .ply) or one made on the
+    /// Scene file (.xml, as Mitsuba 3 reads it), a bare mesh (.obj, .ply) or one made on the
     /// spot (gen:soup:100k, gen:terrain:1M, gen:spheres:1M, gen:hair:200k)
     #[arg(value_name = "SCENE")]
     pub(super) path: PathBuf,
@@ -37,14 +40,28 @@ impl Source {
     }
 
     /// Loads the scene and tells its warnings.
-    pub(super) fn load(&self) -> Result<(SceneDescription, Duration), Failure> {
+    pub(super) fn load(&self) -> Result<(Loaded, Duration), Failure> {
         let start = Instant::now();
         let options = LoadOptions { defines: self.defines.clone() };
         let loaded = load(&self.path, &options)?;
         let time = start.elapsed();
         warn(&loaded.warnings);
-        Ok((loaded.description, time))
+        Ok((loaded, time))
     }
+}
+
+/// Tells which triangles were left out of a scene.
+pub(super) fn warn_of_degenerate(origins: &Origins, scene: &Scene) {
+    let warnings = scene.degenerate().iter().filter_map(|one| {
+        let shapes = match one.group {
+            None => &origins.shapes,
+            Some(group) => origins.groups.get(group.0 as usize)?,
+        };
+        let triangles = counted(one.triangles, "triangle");
+        let message = format!("{triangles} without area can't be hit and are left out");
+        Some(shapes.get(one.shape as usize)?.warning(message).label("of this shape"))
+    });
+    warn(&warnings.collect::<Vec<_>>());
 }
 
 pub(super) fn definition(argument: &str) -> Result<(String, String), String> {

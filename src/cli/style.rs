@@ -18,7 +18,7 @@ pub(super) struct StyleOptions {
     #[arg(long, value_name = "NAME", help_heading = FILE)]
     tonemap: Option<ToneName>,
 
-    /// Numbers of an .exr
+    /// Numbers of the colours in an .exr; depth, positions and ids keep 32 bits
     #[arg(long, value_name = "TYPE", help_heading = FILE, default_value = "float")]
     exr_type: ExrType,
 

@@ -13,6 +13,7 @@ use super::{
 use crate::{
     compile::{Scene, compile_with},
     geometry::Ray32,
+    load::Loaded,
     render::Query,
     verify::{
         Exhibit, Expected, classes,
@@ -78,7 +79,7 @@ impl From<ExpectedName> for Expected {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let file = arguments.rays.as_deref().map(ray_file::read).transpose()?;
     let findings = arguments.threads.pool()?.install(|| {
-        let (description, _) = arguments.source.load()?;
+        let (Loaded { description, .. }, _) = arguments.source.load()?;
         let scene = compile_with(&description, arguments.quality.quality())?;
         let (mut findings, exhibit) = match &file {
             Some(file) => arguments.of_file(&scene, &file.rays),

@@ -13,6 +13,7 @@ use std::cell::RefCell;
 use rayon::prelude::*;
 
 use super::primitives::{INSTANCE, Primitives, accept, accept_single};
+use super::shapes::Degenerate;
 use super::surfaces::Surfaces;
 use super::{
     CompileError, References, Summary,
@@ -20,7 +21,7 @@ use super::{
 };
 use crate::bvh::{Bvh, Hitx8, Quality, Reference, Traversal};
 use crate::geometry::{Aabb, Hit, Placement, PrimitiveId, Ray, RayLanes, Rayx8};
-use crate::scene::{SceneDescription, ShapeGroup};
+use crate::scene::{GroupIndex, SceneDescription, ShapeGroup};
 use crate::simd::{Bits, Mask8, Real, f32x8, u32x8};
 
 /// A group in its own space, with its own numbers.
@@ -29,7 +30,7 @@ pub(super) struct Group {
     surfaces: Surfaces,
     primitives: Primitives,
     bvh: Bvh,
-    degenerate: u64,
+    degenerate: Vec<Degenerate>,
 }
 
 /// Which group, and where.
@@ -111,16 +112,25 @@ impl Instances {
         self.slots.extend(slots);
     }
 
+    /// Triangles without area, group by group.
+    pub(super) fn degenerate(&self) -> impl Iterator<Item = Degenerate> + '_ {
+        let of_group = |(index, group): (u32, &'_ Group)| {
+            let index = GroupIndex(index);
+            group.degenerate.iter().map(move |&one| Degenerate { group: Some(index), ..one }).collect()
+        };
+        (0..).zip(&self.groups).flat_map(move |group| -> Vec<_> { of_group(group) })
+    }
+
     /// Adds groups and instances to what has been compiled; `share` is the part of the upper tree's bytes that
     /// one primitive has.
     pub(super) fn add_to(&self, summary: &mut Summary, share: f64) {
-        let hit = |group: &Group| {
-            group.surfaces.triangles.len() as u64 - group.degenerate + group.surfaces.quadrics()
-        };
+        let triangles =
+            |group: &Group| group.surfaces.triangles.len() as u64 - Degenerate::total(&group.degenerate);
+        let hit = |group: &Group| triangles(group) + group.surfaces.quadrics();
         for group in &self.groups {
-            summary.triangles += group.surfaces.triangles.len() as u64 - group.degenerate;
+            summary.triangles += triangles(group);
             summary.quadrics += group.surfaces.quadrics();
-            summary.degenerate += group.degenerate;
+            summary.degenerate += Degenerate::total(&group.degenerate);
             summary.bvh_nodes += group.bvh.nodes().len() as u64;
             summary.bvh_bytes += (size_of_val(group.bvh.nodes()) + group.primitives.bytes()) as u64;
         }

@@ -20,6 +20,7 @@ use std::time::{Duration, Instant};
 pub use lights::envmap;
 pub use needs::{Needs, needs};
 pub use primitives::Primitives;
+pub use shapes::Degenerate;
 pub use surfaces::Surface;
 pub use tree::TreeShape;
 
@@ -69,6 +70,7 @@ pub struct Scene {
     /// What the camera sees besides.
     pub aovs: Vec<AovChannel>,
     summary: Summary,
+    degenerate: Vec<Degenerate>,
 }
 
 /// What was compiled, for people.
@@ -111,6 +113,11 @@ impl Scene {
     /// What was compiled.
     pub fn summary(&self) -> Summary {
         self.summary
+    }
+
+    /// Which shapes have triangles without area, which are left out: in the world, then in groups.
+    pub fn degenerate(&self) -> &[Degenerate] {
+        &self.degenerate
     }
 }
 
@@ -158,7 +165,7 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
     };
     let named = Named { materials: &material_ids, mapped: shows_uv(description), meshes: &meshes, metered };
     let mut lights = lights::without_surface(&description.emitters);
-    let shapes::Shapes { surfaces, mut references, degenerate, metered } =
+    let shapes::Shapes { surfaces, mut references, mut degenerate, metered } =
         shapes::compile(&description.shapes, &named, &mut lights)?;
     let first = surfaces.shape_of.len() as u32;
     let count = u64::from(first) + description.instances.len() as u64;
@@ -184,9 +191,9 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
 
     let upper = size_of_val(bvh.nodes()) as u64;
     let mut summary = Summary {
-        triangles: surfaces.triangles.len() as u64 - degenerate,
+        triangles: surfaces.triangles.len() as u64 - Degenerate::total(&degenerate),
         quadrics: surfaces.quadrics(),
-        degenerate,
+        degenerate: Degenerate::total(&degenerate),
         materials: materials.len() as u32,
         lights: lights.len() as u32,
         bvh_nodes: bvh.nodes().len() as u64,
@@ -195,6 +202,7 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
         quality,
         ..Summary::default()
     };
+    degenerate.extend(primitives.instances.degenerate());
     primitives.instances.add_to(&mut summary, upper as f64 / count.max(1) as f64);
     let environments = (0..lights.len()).filter(|&i| lights[i].is_environment());
     let environments = environments.map(|i| LightId(i as u32)).collect();
@@ -218,6 +226,7 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
         integrator: description.integrator.clone(),
         aovs: description.aovs.clone(),
         summary,
+        degenerate,
     })
 }
 

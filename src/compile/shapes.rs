@@ -14,7 +14,7 @@ use crate::bvh::Reference;
 use crate::geometry::{Aabb, CanonicalKind, Triangle};
 use crate::light::{AreaLight, Emitting, Light, LightId};
 use crate::material::MaterialId;
-use crate::scene::{Geometry, Shape};
+use crate::scene::{Geometry, GroupIndex, Shape};
 use crate::simd::{Real, Vector3};
 
 /// What shapes name by number.
@@ -29,12 +29,30 @@ pub(super) struct Named<'a> {
     pub(super) metered: Option<u32>,
 }
 
+/// Triangles of a shape that have no area.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Degenerate {
+    /// The group that the shape is in; `None` in the world.
+    pub group: Option<GroupIndex>,
+    /// Place of the shape in its list.
+    pub shape: u32,
+    /// How many.
+    pub triangles: u64,
+}
+
+impl Degenerate {
+    /// In all shapes together.
+    pub(super) fn total(all: &[Self]) -> u64 {
+        all.iter().map(|one| one.triangles).sum()
+    }
+}
+
 /// What the shapes of a description become.
 pub(super) struct Shapes {
     pub(super) surfaces: Surfaces,
     pub(super) references: References,
     /// Triangles without area: they keep their numbers and are in no leaf.
-    pub(super) degenerate: u64,
+    pub(super) degenerate: Vec<Degenerate>,
     /// The shape that was asked for, if it can be hit.
     pub(super) metered: Option<Metered>,
 }
@@ -63,7 +81,8 @@ pub(super) fn compile(
     named: &Named,
     lights: &mut Vec<Light>,
 ) -> Result<Shapes, CompileError> {
-    let mut all = Shapes { surfaces: Surfaces::default(), references: vec![], degenerate: 0, metered: None };
+    let mut all =
+        Shapes { surfaces: Surfaces::default(), references: vec![], degenerate: vec![], metered: None };
     all.reserve(shapes);
     for (shape, place) in shapes.iter().zip(0..) {
         let count = all.surfaces.shape_of.len() as u64 + primitive_count(&shape.geometry);
@@ -196,19 +215,23 @@ impl Shapes {
     ) -> (Class, usize, Emitting) {
         let first = self.surfaces.triangles.len();
         let Interpolated { uv, normal } = add(&mut self.surfaces);
-        let mut emitting = Vec::new();
+        let (mut emitting, mut degenerate) = (Vec::new(), 0);
         for index in first..self.surfaces.triangles.len() {
             let triangle = self.surfaces.triangle(index);
             if triangle.e1().cross(triangle.e2()) == Vec3::ZERO {
                 // Its determinant would be noise: a hit where there is nothing.
                 self.number();
-                self.degenerate += 1;
+                degenerate += 1;
             } else {
                 self.refer(triangle.bounds(), TRIANGLE);
                 if is_drawn_from {
                     emitting.push(triangle);
                 }
             }
+        }
+        if degenerate > 0 {
+            let shape = self.surfaces.shapes.len() as u32;
+            self.degenerate.push(Degenerate { group: None, shape, triangles: degenerate });
         }
         (Class::Triangles { uv, normal }, first, together(emitting))
     }

@@ -11,7 +11,7 @@ use glam::Vec3;
 use super::Ray;
 use crate::simd::{Real, Vector3};
 
-/// A closed box; [`Aabb::EMPTY`] holds nothing.
+/// A closed box along the axes of the world, or of a group's space; [`Aabb::EMPTY`] holds nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
     /// Least coordinates.

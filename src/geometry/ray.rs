@@ -5,7 +5,8 @@ use glam::Vec3;
 use super::triangle;
 use crate::simd::{Real, Vector3, f32x8};
 
-/// A half-open segment org + t·dir, t in (`t_near`, `t_far`]. `dir` need not be of unit length.
+/// A half-open segment org + t·dir, t in (`t_near`, `t_far`], in the space of what it is traced through: the
+/// world, or a group's. `dir` need not be of unit length.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray {
     /// Origin.
@@ -14,9 +15,9 @@ pub struct Ray {
     pub dir: Vec3,
     /// 1/dir, ±∞ where a component is ±0.
     pub rdir: Vec3,
-    /// Excluded lower end.
+    /// Excluded lower end, in units of `dir`.
     pub t_near: f32,
-    /// Included upper end.
+    /// Included upper end, in units of `dir`.
     pub t_far: f32,
 }
 

@@ -249,6 +249,6 @@ mod tests {
         let (scene, warnings) = scene(&[("a.obj", &text)]);
         assert_eq!(scene.materials, [neutral()]);
         assert_eq!(warnings.len(), 2, "{warnings:?}");
-        assert!(warnings[0].message.contains("no.mtl") && warnings[1].message.contains("`red`"));
+        assert!(warnings[0].message().contains("no.mtl") && warnings[1].message().contains("`red`"));
     }
 }

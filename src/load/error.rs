@@ -1,8 +1,8 @@
 //! Errors and warnings that name the place and the way out.
 
-use std::{error::Error, fmt, ops::Range, path::Path};
+use std::{error::Error, fmt, ops::Range, path::Path, sync::Arc};
 
-use miette::{Diagnostic, NamedSource, SourceSpan};
+use miette::{Diagnostic, LabeledSpan, NamedSource, Severity, SourceCode, SourceSpan};
 
 /// Why a file was refused.
 ///
@@ -22,7 +22,8 @@ struct Inner {
     message: String,
     label: String,
     help: Option<String>,
-    excerpt: Option<(NamedSource<String>, SourceSpan)>,
+    // Of one text there may be many warnings.
+    excerpt: Option<(NamedSource<Arc<str>>, SourceSpan)>,
 }
 
 impl LoadError {
@@ -39,13 +40,23 @@ impl LoadError {
 
     /// Something is wrong at a byte range of a text file.
     pub fn at(path: &Path, text: &str, range: Range<usize>, message: impl Into<String>) -> Self {
+        Self::within(path, &text.into(), range, message)
+    }
+
+    /// [`at`](Self::at), of a text that several messages show.
+    pub(super) fn within(
+        path: &Path,
+        text: &Arc<str>,
+        range: Range<usize>,
+        message: impl Into<String>,
+    ) -> Self {
         let start = char_boundary(text, range.start);
         let name = path.display().to_string();
         let mut error = Self::new(path, message);
         error.0.place = place(path, text, start);
         if shown(text, start) <= MAX_SHOWN {
             error.0.excerpt = Some((
-                NamedSource::new(name, text.to_owned()),
+                NamedSource::new(name, Arc::clone(text)),
                 (start, range.end.min(text.len()).saturating_sub(start)).into(),
             ));
         }
@@ -73,7 +84,7 @@ impl LoadError {
 }
 
 /// `file:line:column` of a byte of a text file, counted from 1 in characters.
-pub(super) fn place(path: &Path, text: &str, byte: usize) -> String {
+fn place(path: &Path, text: &str, byte: usize) -> String {
     let before = &text[..char_boundary(text, byte)];
     let line = before.matches('\n').count() + 1;
     let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
@@ -107,29 +118,93 @@ impl Diagnostic for LoadError {
         self.0.help.as_ref().map(|help| Box::new(help) as Box<dyn fmt::Display>)
     }
 
-    fn source_code(&self) -> Option<&dyn miette::SourceCode> {
-        self.0.excerpt.as_ref().map(|(source, _)| source as &dyn miette::SourceCode)
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.0.excerpt.as_ref().map(|(source, _)| source as &dyn SourceCode)
     }
 
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = miette::LabeledSpan> + '_>> {
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         let (_, span) = self.0.excerpt.as_ref()?;
-        let label = miette::LabeledSpan::new_with_span(Some(self.0.label.clone()), *span);
+        let label = LabeledSpan::new_with_span(Some(self.0.label.clone()), *span);
         Some(Box::new(std::iter::once(label)))
     }
 }
 
-/// Something legal that is probably not meant; the scene still loads.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Warning {
+/// Something legal that is probably not meant; the scene still loads. It is shown as an error is, and two are
+/// equal that say the same of one place.
+#[derive(Debug, Clone)]
+pub struct Warning(LoadError);
+
+impl Warning {
+    /// About the file as a whole, or about a place that `message` describes. One sentence: what was found,
+    /// and what was done about it.
+    pub fn new(path: &Path, message: impl Into<String>) -> Self {
+        Self(LoadError::new(path, message))
+    }
+
+    /// About a byte range of a text that several messages show.
+    pub(super) fn within(
+        path: &Path,
+        text: &Arc<str>,
+        range: Range<usize>,
+        message: impl Into<String>,
+    ) -> Self {
+        Self(LoadError::within(path, text, range, message))
+    }
+
+    /// Words under the underlined text.
+    #[must_use]
+    pub fn label(self, label: impl Into<String>) -> Self {
+        Self(self.0.label(label))
+    }
+
+    /// What to do about it.
+    #[must_use]
+    pub fn help(self, help: impl Into<String>) -> Self {
+        Self(self.0.help(help))
+    }
+
     /// `file` or `file:line:column`.
-    pub place: String,
-    /// One sentence: what was found and what was done about it.
-    pub message: String,
+    pub fn place(&self) -> &str {
+        self.0.place()
+    }
+
+    /// What is said of the place.
+    pub fn message(&self) -> &str {
+        &self.0.0.message
+    }
 }
+
+impl PartialEq for Warning {
+    fn eq(&self, other: &Self) -> bool {
+        (self.place(), self.message()) == (other.place(), other.message())
+    }
+}
+
+impl Eq for Warning {}
 
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.place, self.message)
+        self.0.fmt(f)
+    }
+}
+
+impl Error for Warning {}
+
+impl Diagnostic for Warning {
+    fn severity(&self) -> Option<Severity> {
+        Some(Severity::Warning)
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        Diagnostic::help(&self.0)
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.0.source_code()
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        self.0.labels()
     }
 }
 

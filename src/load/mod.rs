@@ -10,6 +10,7 @@ mod mtl;
 mod obj;
 mod obj_materials;
 mod obj_text;
+mod origin;
 mod ply;
 mod serialized;
 pub mod sh;
@@ -19,6 +20,7 @@ mod text;
 use std::path::Path;
 
 pub use error::{LoadError, Warning};
+pub use origin::{Origin, Origins};
 
 use crate::scene::{Material, Mesh, SceneDescription};
 
@@ -36,6 +38,8 @@ pub struct Loaded {
     pub description: SceneDescription,
     /// In the order found.
     pub warnings: Vec<Warning>,
+    /// Where the scene's shapes are described.
+    pub origins: Origins,
 }
 
 /// Loads a scene file (`.xml`), a bare mesh (`.obj`, `.ply`) or one made on the spot (`gen:`, see
@@ -51,7 +55,8 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
         Kind::Generated(spec) => bare::describe_mesh(spec.into(), generate::mesh(spec)?),
         Kind::Other(extension) => return Err(unknown(path, &extension)),
     };
-    Ok(Loaded { description, warnings })
+    let origins = Origins::of_file(path, description.shapes.len());
+    Ok(Loaded { description, warnings, origins })
 }
 
 /// Reads a material written on a line, `plugin:name=value,…`, as in

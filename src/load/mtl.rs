@@ -3,7 +3,10 @@
 //! MTL files are careless more often than not, and a scene without its colours is better than no
 //! scene: a line that makes no sense is reported and passed over.
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use super::{LoadError, Warning, text};
 use crate::scene::Rgb;
@@ -27,7 +30,7 @@ pub(super) struct MtlMaterial {
 
 /// Reads a library.
 pub(super) fn read(path: &Path, warnings: &mut Vec<Warning>) -> Result<Vec<MtlMaterial>, LoadError> {
-    let source = text::read(path)?;
+    let source: Arc<str> = text::read(path)?.into();
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut materials: Vec<MtlMaterial> = Vec::new();
     for line in source.lines().map(str::trim) {
@@ -45,8 +48,8 @@ pub(super) fn read(path: &Path, warnings: &mut Vec<Warning>) -> Result<Vec<MtlMa
             _ => Some(()),
         };
         if understood.is_none() {
-            let place = LoadError::at(path, &source, text::range_of(&source, line), "").place().to_owned();
-            warnings.push(Warning { place, message: format!("`{line}` was not understood and is ignored") });
+            let message = format!("`{line}` was not understood and is ignored");
+            warnings.push(Warning::within(path, &source, text::range_of(&source, line), message));
         }
     }
     Ok(materials)

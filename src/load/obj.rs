@@ -108,7 +108,7 @@ mod tests {
             |text: String| text.rsplit_once("a.obj").map_or(text.clone(), |(_, end)| end.to_owned());
         (
             mesh.map_err(|error| relative(error.to_string())),
-            warnings.into_iter().map(|warning| warning.message).collect(),
+            warnings.into_iter().map(|warning| warning.message().to_owned()).collect(),
         )
     }
 

@@ -19,7 +19,8 @@ use crate::{
 
 /// The materials that an OBJ file can use, and the pictures that were read for them.
 pub(super) struct Library {
-    place: String,
+    /// Of the OBJ file.
+    path: PathBuf,
     materials: HashMap<String, MtlMaterial>,
     /// `None` could not be read, which has been said.
     pictures: HashMap<PathBuf, Option<Arc<Picture>>>,
@@ -32,19 +33,18 @@ impl Library {
         names: &[String],
         warnings: &mut Vec<Warning>,
     ) -> Result<Self, LoadError> {
-        let place = path.display().to_string();
         let mut materials = HashMap::new();
         for name in names {
             let file = path.with_file_name(name.replace('\\', "/"));
             if !file.is_file() {
                 let message = format!("the material library {name} is missing: its materials are grey");
-                warnings.push(Warning { place: place.clone(), message });
+                warnings.push(Warning::new(path, message));
                 continue;
             }
             let found = mtl::read(&file, warnings)?;
             materials.extend(found.into_iter().map(|material| (material.name.clone(), material)));
         }
-        Ok(Self { place, materials, pictures: HashMap::new() })
+        Ok(Self { path: path.to_owned(), materials, pictures: HashMap::new() })
     }
 
     /// The reflection model called `name`, and the radiance that it emits.
@@ -56,7 +56,7 @@ impl Library {
         let Some(mtl) = self.materials.get(name) else {
             if !name.is_empty() {
                 let message = format!("there is no material `{name}`: its faces are grey");
-                warnings.push(Warning { place: self.place.clone(), message });
+                warnings.push(Warning::new(&self.path, message));
             }
             return None;
         };
@@ -71,7 +71,7 @@ impl Library {
             Ok(picture) => Some(Arc::new(picture)),
             Err(error) => {
                 let message = format!("a texture can't be read, Kd is used in its place: {error}");
-                warnings.push(Warning { place: self.place.clone(), message });
+                warnings.push(Warning::new(&self.path, message));
                 None
             }
         };

@@ -237,8 +237,7 @@ impl<'a> Reader<'a> {
             let only = if self.wires > 0 { "; it has only lines or points, which can't be hit" } else { "" };
             return Err(LoadError::new(self.path, format!("the file has no faces{only}")));
         }
-        let place = self.path.display().to_string();
-        let mut warn = |message: String| warnings.push(Warning { place: place.clone(), message });
+        let mut warn = |message: String| warnings.push(Warning::new(self.path, message));
         if self.dropped > 0 {
             warn(format!("{} faces with fewer than 3 corners were dropped", self.dropped));
         }

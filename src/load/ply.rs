@@ -61,7 +61,7 @@ fn read(path: &Path, attributed: bool, warnings: &mut Vec<Warning>) -> Result<Me
     }
     if polygons.dropped > 0 {
         let message = format!("{} faces with fewer than 3 corners were dropped", polygons.dropped);
-        warnings.push(Warning { place: path.display().to_string(), message });
+        warnings.push(Warning::new(path, message));
     }
     if mesh.triangles.is_empty() {
         return Err(LoadError::new(path, "the file has no faces")

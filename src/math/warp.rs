@@ -25,8 +25,8 @@ pub fn cosine_hemisphere<R: Real>(u: R, v: R) -> Vector3<R> {
     vector3(x, y, z)
 }
 
-/// Unit vectors within the angle whose cosine is `cos_max` of +z, density 1/(2π(1 − cos_max)).
-/// `cos_max` = −1 is the whole sphere.
+/// Unit vectors within an angle θ of +z, density 1/(2π(1 − cos θ)) per solid angle. `one_minus_cos_max` is
+/// 1 − cos θ; 2 is the whole sphere.
 #[inline]
 pub fn cone<R: Real>(u: R, v: R, one_minus_cos_max: R) -> Vector3<R> {
     // 1 − z is kept, not z: a narrow cone has no bits left in its cosine.

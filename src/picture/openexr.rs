@@ -18,7 +18,8 @@ const MAX_EXPANSION: u64 = 2048;
 /// How an OpenEXR file holds a picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExrStyle {
-    /// 16 bits a number instead of 32: 11 of them count, and what is above 65504 becomes infinite.
+    /// 16 bits a number of a colour instead of 32: 11 of them count, and what is above 65504 becomes infinite.
+    /// Distances, places and numbers of things, for which that is too few, keep 32.
     pub half: bool,
     /// How it is made smaller.
     pub compression: ExrCompression,
@@ -64,7 +65,7 @@ pub(super) fn encode(picture: &Picture, style: &ExrStyle) -> Result<Vec<u8>, Str
         let name = Text::new_or_none(&channel.name)
             .filter(|_| !channel.name.is_empty())
             .ok_or_else(|| format!("`{}` is no name for a channel of an EXR file", channel.name))?;
-        let samples = match style.half {
+        let samples = match style.half && is_colour(&channel.name) {
             true => FlatSamples::F16(channel.samples.iter().map(|&x| f16::from_f32(x)).collect()),
             false => FlatSamples::F32(channel.samples.clone()),
         };
@@ -83,6 +84,12 @@ pub(super) fn encode(picture: &Picture, style: &ExrStyle) -> Result<Vec<u8>, Str
     let mut file = Cursor::new(Vec::new());
     Image::from_layer(layer).write().non_parallel().to_buffered(&mut file).map_err(|e| e.to_string())?;
     exr_header::insert(&file.into_inner(), &style.attributes)
+}
+
+/// A part of a colour, in whatever layer; `Y` in a layer is a coordinate.
+fn is_colour(channel: &str) -> bool {
+    let (layer, part) = channel.rsplit_once('.').unwrap_or(("", channel));
+    matches!(part, "R" | "G" | "B" | "A") || (layer.is_empty() && part == "Y")
 }
 
 /// `R G B`, or `Y` three times, of the first layer that has them.

@@ -70,6 +70,19 @@ pub(super) trait Outgoing<R: Real> {
 
     /// The path goes on along a ray. `index` numbers the branches from 0.
     fn next(&mut self, index: usize, lanes: R::Mask, ray: (Vector3<R>, Vector3<R>), path: &Path<R>);
+
+    /// Paths in `lanes` would go on, and don't: for those who count.
+    #[inline]
+    fn end(&mut self, _: End, _: R::Mask) {}
+}
+
+/// Why a path ends that light would still follow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum End {
+    /// It is as long as the integrator allows, or its last ray could find no light.
+    Depth,
+    /// It lost at Russian roulette.
+    Roulette,
 }
 
 /// Adds a colour to the channels R, G and B.

@@ -6,6 +6,7 @@
 
 use std::{
     cell::RefCell,
+    ops::AddAssign,
     time::{Duration, Instant},
 };
 
@@ -51,13 +52,13 @@ impl Counts {
         let lanes = self.tests * LANES as u64;
         if lanes == 0 { 0.0 } else { (self.nodes + self.primitives) as f64 / lanes as f64 }
     }
+}
 
-    fn plus(self, other: Self) -> Self {
-        Self {
-            nodes: self.nodes + other.nodes,
-            primitives: self.primitives + other.primitives,
-            tests: self.tests + other.tests,
-        }
+impl AddAssign for Counts {
+    fn add_assign(&mut self, other: Self) {
+        self.nodes += other.nodes;
+        self.primitives += other.primitives;
+        self.tests += other.tests;
     }
 }
 
@@ -138,7 +139,11 @@ fn count(class: &RayClass, trace: impl Fn(&[Ray32], &mut Tracer<Counts>) + Sync)
         trace(rays, &mut tracer);
         tracer.traversal.tally
     };
-    class.rays.par_chunks(CHUNK).map(chunk).reduce(Counts::default, Counts::plus)
+    let add = |mut sum: Counts, chunk| {
+        sum += chunk;
+        sum
+    };
+    class.rays.par_chunks(CHUNK).map(chunk).reduce(Counts::default, add)
 }
 
 fn closest(class: &RayClass, repeat: u32, trace: impl Fn(&[Ray32], &mut [Hit]) + Sync) -> Timed {

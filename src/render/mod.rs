@@ -8,6 +8,7 @@ mod ao;
 mod aov;
 mod budget;
 mod camera_rays;
+mod census;
 mod connections;
 mod departure;
 mod direct;
@@ -32,6 +33,7 @@ mod wavefront;
 mod whitted;
 
 pub use budget::{Budget, Conditions};
+pub use census::{Census, Crowd, Ends, census};
 pub use frame::{Coverage, Frame, Plan, TileView, Watch, tile_count};
 pub use irradiance::Receiver;
 pub use ray_classes::{Query, RayClass, ray_classes};

@@ -4,10 +4,10 @@
 //! BSDF; a light that is found both ways is weighted by the power heuristic \[VG95\]. Russian roulette goes
 //! by the throughput without the squared index of refraction that glass puts into it.
 
-use super::integrator::{Integrator, Line, Outgoing, Path, add_rgb};
+use super::integrator::{End, Integrator, Line, Outgoing, Path, add_rgb};
 use super::vertex::{Sampled, Vertex, environment};
 use crate::compile::Scene;
-use crate::simd::Real;
+use crate::simd::{Mask, Real};
 
 /// Pairs of random numbers at a vertex: light, direction, lobe and roulette.
 const PAIRS: u32 = 3;
@@ -41,6 +41,7 @@ impl Integrator for PathTracer {
             add_rgb(out, vertex.emitted(scene, Sampled::One));
         }
         if path.depth + 1 >= self.max_depth {
+            out.end(End::Depth, R::Mask::splat(true));
             return;
         }
         let unused = (R::zero(), R::zero());
@@ -56,11 +57,15 @@ impl Integrator for PathTracer {
         let direction = if vertex.is_smooth() { path.random(PAIRS, 1) } else { unused };
         let (mut lanes, ray, mut next) = vertex.scatter(lobe, direction);
         if next.depth + 1 >= self.max_depth {
-            lanes = lanes & scene.sight.may_find(ray);
+            let may_find = scene.sight.may_find(ray);
+            out.end(End::Depth, lanes & !may_find);
+            lanes = lanes & may_find;
         }
         if survives_by_chance {
             let survival = (next.beta.max_element() * next.eta2).min(R::splat(MAX_SURVIVAL));
-            lanes = lanes & roulette.lt(survival);
+            let survives = roulette.lt(survival);
+            out.end(End::Roulette, lanes & !survives);
+            lanes = lanes & survives;
             next.beta = next.beta.scale(R::one() / survival);
         }
         out.next(0, lanes, ray, &next);

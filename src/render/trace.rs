@@ -3,7 +3,7 @@
 use super::connections::Connections;
 use super::rows::{Hits, Paths};
 use super::statistics::LaneUse;
-use crate::bvh::{Stream, Tracer, Way};
+use crate::bvh::{Stream, Tally, Tracer, Way};
 use crate::compile::Scene;
 use crate::geometry::{Hit, Rayx8};
 use crate::simd::{LANES, Mask, Mask8};
@@ -67,40 +67,45 @@ impl Stream for Blocked<'_, '_> {
 }
 
 /// Finds the nearest hits of paths.
-pub(super) fn closest<'a>(
+pub(super) fn closest<'a, T: Tally>(
     scene: &Scene,
     paths: &Paths<'a>,
     hits: &mut Hits<'a>,
     route: Route,
-    tracer: &mut Tracer,
+    tracer: &mut Tracer<T>,
 ) -> LaneUse {
     hits.resize(paths.len);
-    trace::<false>(scene, &mut Nearest { paths, hits }, route, tracer);
+    trace::<false, _>(scene, &mut Nearest { paths, hits }, route, tracer);
     LaneUse::of_packets(paths.len)
 }
 
 /// Takes the light from connections that anything blocks.
-pub(super) fn occluded(
+pub(super) fn occluded<T: Tally>(
     scene: &Scene,
     connections: &mut Connections,
     route: Route,
-    tracer: &mut Tracer,
+    tracer: &mut Tracer<T>,
 ) -> LaneUse {
     let len = connections.len;
-    trace::<true>(scene, &mut Blocked(connections), route, tracer);
+    trace::<true, _>(scene, &mut Blocked(connections), route, tracer);
     LaneUse::of_packets(len)
 }
 
-fn trace<const ANY: bool>(scene: &Scene, stream: &mut impl Stream, route: Route, tracer: &mut Tracer) {
+fn trace<const ANY: bool, T: Tally>(
+    scene: &Scene,
+    stream: &mut impl Stream,
+    route: Route,
+    tracer: &mut Tracer<T>,
+) {
     let way = match route {
         Route::Stream(Way::Chosen) => scene.way(),
         Route::Stream(way) => way,
-        Route::Single => return one_by_one::<ANY>(scene, stream, tracer),
+        Route::Single => return one_by_one::<ANY, _>(scene, stream, tracer),
     };
     scene.trace::<ANY, _, _>(stream, way, tracer);
 }
 
-fn one_by_one<const ANY: bool>(scene: &Scene, stream: &mut impl Stream, tracer: &mut Tracer) {
+fn one_by_one<const ANY: bool, T: Tally>(scene: &Scene, stream: &mut impl Stream, tracer: &mut Tracer<T>) {
     let traversal = &mut tracer.traversal;
     for first in (0..stream.len()).step_by(LANES) {
         let (rays, active) = stream.packet(first);

@@ -10,9 +10,10 @@ use bumpalo::{Bump, collections::Vec as BumpVec};
 
 use super::Settings;
 use super::camera_rays::{self, Pixels};
+use super::census::{Census, Ends, Probe};
 use super::connections::Connections;
 use super::frame::Visit;
-use super::integrator::{Integrator, Outgoing, Path};
+use super::integrator::{End, Integrator, Outgoing, Path};
 use super::layers::{Layers, Quad};
 use super::rows::{Hits, Packet, Paths, fill, reserve};
 use super::sort::{Sorter, for_each_unsorted_group};
@@ -50,6 +51,8 @@ pub(super) struct Wavefront<'a, I> {
     quads: usize,
     /// Eight pixels' channels, one after the other.
     columns: BumpVec<'a, f32x8>,
+    /// Looks on where rays are counted, not rendered.
+    probe: Option<Box<Probe>>,
 }
 
 /// What the groups of a round have said, by slot.
@@ -94,6 +97,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             sums: BumpVec::new_in(arena),
             quads,
             columns: BumpVec::new_in(arena),
+            probe: None,
         }
     }
 
@@ -146,6 +150,14 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
         self.sums.iter().flatten().copied().take(self.channels).collect()
     }
 
+    /// What one sample of a tile does.
+    pub(super) fn census(&mut self, tile: &Tile, sample: u32) -> Census {
+        self.probe = Some(Box::new(Probe::new()));
+        self.start(&Pixels::new(self.scene, tile), sample);
+        self.run(sample, &mut Statistics::default());
+        self.probe.take().map_or_else(Census::default, |probe| probe.finish())
+    }
+
     /// One path from each pixel.
     fn start(&mut self, pixels: &Pixels, sample: u32) {
         let len = pixels.paths.len();
@@ -179,6 +191,9 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             } else {
                 self.trace(depth, statistics);
                 self.shade(depth, sample, statistics);
+                if let Some(probe) = &mut self.probe {
+                    probe.ends(&self.paths, &self.hits, &self.out.alive, self.out.branches);
+                }
             }
             self.connect(statistics);
             let start = Instant::now();
@@ -195,8 +210,11 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
         let start = Instant::now();
         let rays = if depth == 0 { &mut statistics.camera_rays } else { &mut statistics.bounce_rays };
         *rays += self.paths.len as u64;
-        let Self { scene, paths, hits, route, tracer, .. } = self;
-        statistics.trace_lanes += trace::closest(scene, paths, hits, *route, tracer);
+        let Self { scene, paths, hits, route, tracer, probe, .. } = self;
+        statistics.trace_lanes += match probe {
+            None => trace::closest(scene, paths, hits, *route, tracer),
+            Some(probe) => probe.closest(scene, paths, hits, depth),
+        };
         statistics.spend(Stage::Trace, start);
     }
 
@@ -208,13 +226,13 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             let count = (paths.len - first as usize).min(LANES);
             statistics.shade_lanes.add(count as u32);
             let Packet { path, pixel, .. } = paths.packet(&slots, 0, sample);
-            integrator.begin(scene, &path, &mut Group { slots, count, pixel, out });
+            integrator.begin(scene, &path, &mut Group { slots, count, pixel, out, ends: None });
         }
     }
 
     fn shade(&mut self, depth: u32, sample: u32, statistics: &mut Statistics) {
         let start = Instant::now();
-        let Self { scene, integrator, layers, paths, hits, keys, sorter, out, sums, .. } = self;
+        let Self { scene, integrator, layers, paths, hits, keys, sorter, out, sums, probe, .. } = self;
         // What the camera sees besides is said in the first round.
         let mut layers = layers.as_mut().filter(|_| depth == 0);
         let miss = scene.materials.len() as u32;
@@ -229,14 +247,19 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
         if self.sort {
             sorter.sort(keys);
         }
+        if let Some(probe) = probe {
+            probe.groups(keys, scene.materials.len() + 1);
+        }
+        let mut ends = probe.as_deref_mut().map(|probe| &mut probe.census.ends);
         let start = statistics.spend(Stage::Sort, start);
         let lanes = &mut statistics.shade_lanes;
         let group = |key: u32, slots: &[u32]| {
             lanes.add(slots.len() as u32);
             let at = fill(slots);
             let Packet { org, dir, path, pixel, .. } = paths.packet(&at, depth, sample);
+            let ends = ends.as_deref_mut();
             let pixels = pixel.to_array();
-            let mut group = Group { slots: at, count: slots.len(), pixel, out };
+            let mut group = Group { slots: at, count: slots.len(), pixel, out, ends };
             if key == miss {
                 integrator.miss(scene, &path, (org, dir), &mut group);
                 if let Some(layers) = &mut layers {
@@ -265,8 +288,11 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     fn connect(&mut self, statistics: &mut Statistics) {
         let start = Instant::now();
         statistics.shadow_rays += self.out.connections.len as u64;
-        let Self { scene, out, route, tracer, .. } = self;
-        statistics.trace_lanes += trace::occluded(scene, &mut out.connections, *route, tracer);
+        let Self { scene, out: Outputs { connections, .. }, route, tracer, probe, .. } = self;
+        statistics.trace_lanes += match probe {
+            None => trace::occluded(scene, connections, *route, tracer),
+            Some(probe) => probe.occluded(scene, connections),
+        };
         statistics.spend(Stage::Trace, start);
     }
 
@@ -304,6 +330,7 @@ struct Group<'g, 'a> {
     count: usize,
     pixel: u32x8,
     out: &'g mut Outputs<'a>,
+    ends: Option<&'g mut Ends>,
 }
 
 impl Outgoing<f32x8> for Group<'_, '_> {
@@ -342,6 +369,13 @@ impl Outgoing<f32x8> for Group<'_, '_> {
             self.out.alive[at as usize] = lanes >> i & 1 != 0;
         }
     }
+
+    #[inline]
+    fn end(&mut self, why: End, lanes: Mask8) {
+        if let Some(ends) = &mut self.ends {
+            ends.add(why, lanes.to_bitmask() & ((1 << self.count) - 1));
+        }
+    }
 }
 
 #[cfg(test)]
@@ -362,7 +396,8 @@ mod tests {
         out.clear(16, 1);
         let all = Mask8::splat(true);
         let (zero, one) = (Vec3x8::zero(), f32x8::splat(1.0));
-        let mut group = Group { slots: fill(&[3, 9]), count: 2, pixel: u32x8::splat(7), out: &mut out };
+        let mut group =
+            Group { slots: fill(&[3, 9]), count: 2, pixel: u32x8::splat(7), out: &mut out, ends: None };
         group.add(0, one);
         group.shadow(0, all, (zero, zero, one), zero);
         group.next(0, all, (zero, zero), &Path::start(u32x8::splat(1), 0));

@@ -25,7 +25,7 @@ pub enum Integrator {
     },
     /// The share of the hemisphere, weighted by the cosine, in which nothing is near.
     AmbientOcclusion {
-        /// What is farther does not count; +∞ is no limit.
+        /// What is farther, in units of the world, does not count; +∞ is no limit.
         distance: f32,
     },
     /// Irradiance of what the camera sees, on the side that it sees, W/m².
@@ -60,7 +60,7 @@ pub struct AovChannel {
 /// An arbitrary output variable. A ray that hits nothing writes 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Aov {
-    /// Ray parameter from the near plane, `.T`.
+    /// Distance along the ray from the near plane, in units of the world, `.T`.
     Depth,
     /// Hit point in world space, `.X .Y .Z`.
     Position,

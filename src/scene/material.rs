@@ -209,4 +209,16 @@ impl Material {
             | Self::Toon { .. } => false,
         }
     }
+
+    /// Does it reflect on the side that its normal looks away from?
+    pub fn has_two_sides(&self) -> bool {
+        match self {
+            Self::TwoSided { .. } => true,
+            Self::Blend { nested, .. } => nested.iter().any(Self::has_two_sides),
+            Self::Mask { nested, .. } | Self::BumpMap { nested, .. } | Self::NormalMap { nested, .. } => {
+                nested.has_two_sides()
+            }
+            _ => self.transmits(),
+        }
+    }
 }

@@ -14,6 +14,7 @@ mod sensor;
 mod shape;
 mod texture;
 
+pub use doubts::Doubt;
 pub use emitter::Emitter;
 pub use integrator::{Aov, AovChannel, Integrator};
 pub use material::{Distribution, Material, MerlTable, Metal, Principled, Ramp, Relief, Roughness, Stop};

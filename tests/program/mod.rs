@@ -50,3 +50,10 @@ pub(crate) fn folder(test: &str) -> PathBuf {
 pub(crate) fn path(folder: &Path, name: &str) -> String {
     folder.join(name).display().to_string()
 }
+
+/// A scene that every stage can do: one triangle, one light.
+pub(crate) fn triangle(folder: &Path) -> String {
+    let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    fs::write(folder.join("triangle.obj"), mesh).expect("writable");
+    path(folder, "triangle.obj")
+}

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::{
     cli::quality::QualityName,
-    cli::quantity::{counted, grouped, mebibytes, mega_per_second, time},
+    cli::quantity::{counted, grouped, mega_per_second, memory, time},
     compile::Summary,
     render::{
         Query, RayClass,
@@ -135,7 +135,7 @@ impl fmt::Display for Build {
             mega_per_second(primitives, bvh_time),
             counted(rayon::current_num_threads() as u64, "thread"),
             counted(bvh_nodes, "node"),
-            mebibytes(bvh_bytes),
+            memory(bvh_bytes),
         )?;
         writeln!(f)?;
         let packets = "packets: nodes and tests a ray";

@@ -15,6 +15,7 @@ use crate::{
         source::Source,
     },
     compile::compile_with,
+    load::Loaded,
     render::{Settings, render},
 };
 
@@ -42,7 +43,7 @@ struct Frame {
 /// say after a warm-up.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = arguments.scene.clone().unwrap_or_default();
-    let (mut description, _) = Source::new(path, arguments.defines.clone()).load()?;
+    let (Loaded { mut description, .. }, _) = Source::new(path, arguments.defines.clone()).load()?;
     let overrides = Overrides {
         integrator: Some(IntegratorName::Whitted),
         spp: Some(1),

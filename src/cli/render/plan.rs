@@ -13,6 +13,7 @@ use crate::{
         output::Output,
         overrides::IntegratorName,
     },
+    load::Loaded,
     picture::Format,
     render::{self, Conditions, Plan, Shard},
     scene::{PixelFormat, Projection, SceneDescription, Sensor},
@@ -21,7 +22,7 @@ use crate::{
 /// A render before anything is compiled.
 pub(super) struct Planned {
     /// The scene with everything that the command line says of it.
-    pub(super) description: SceneDescription,
+    pub(super) loaded: Loaded,
     pub(super) load_time: Duration,
     /// What is to be rendered.
     pub(super) plan: Plan,
@@ -30,22 +31,23 @@ pub(super) struct Planned {
 
 /// Loads the scene, and sees whether all that is asked for fits it, and into memory.
 pub(super) fn planned(arguments: &Arguments, output: &Output) -> Result<Planned, Failure> {
-    let (mut description, load_time) = arguments.source.load()?;
-    arguments.overrides().apply(&mut description);
+    let (mut loaded, load_time) = arguments.source.load()?;
+    let description = &mut loaded.description;
+    arguments.overrides().apply(description);
     let film = &mut description.sensor.film;
     if let Some(bounds) = arguments.crop {
         film.crop = Some(bounds.of(film).map_err(|message| refused(ErrorKind::ValueValidation, message))?);
     }
     description.aovs = arguments.layers();
-    can_hold(output.format, &description)?;
+    can_hold(output.format, description)?;
     if arguments.denoise {
-        can_denoise(arguments, &description)?;
+        can_denoise(arguments, description)?;
         description.aovs.extend(denoised::besides(&description.aovs));
     }
     if let Some(option) = arguments.style.only_for_png().filter(|_| output.format != Format::Png) {
         warn_of(format!("{option} only changes a .png; the numbers of this file stay linear"));
     }
-    let plan = plan(arguments, &description, output.format)?;
+    let plan = plan(arguments, description, output.format)?;
     let may_be_part = arguments.time_limit.is_some() || plan.shard != Shard::WHOLE;
     let keeps_sums = arguments.keep.keeps_sums() || may_be_part && output.format == Format::Exr;
     let conditions = Conditions {
@@ -53,8 +55,8 @@ pub(super) fn planned(arguments: &Arguments, output: &Output) -> Result<Planned,
         threads: rayon::current_num_threads(),
         keeps_sums,
     };
-    let memory = arguments.memory.check(&description, &conditions)?;
-    Ok(Planned { description, load_time, plan, memory })
+    let memory = arguments.memory.check(description, &conditions)?;
+    Ok(Planned { loaded, load_time, plan, memory })
 }
 
 fn refused(kind: ErrorKind, message: impl Into<String>) -> Failure {

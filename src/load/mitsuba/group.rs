@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::{Builder, properties::Object, vocabulary::Class};
 use crate::{
-    load::LoadError,
+    load::{LoadError, Origin},
     scene::{GroupIndex, Instance, ShapeGroup},
 };
 
@@ -48,6 +48,7 @@ impl Builder {
             return Ok(index);
         }
         let mut group = ShapeGroup { name: object.id().unwrap_or(GROUP).to_owned(), shapes: vec![] };
+        let mut origins = Vec::new();
         for shape in object.children(Class::Shape) {
             if let plugin @ (GROUP | INSTANCE) = shape.plugin() {
                 let article = if plugin == GROUP { "a" } else { "an" };
@@ -67,10 +68,12 @@ impl Builder {
                     .help("let the shape that is measured stand in the scene itself"));
             }
             group.shapes.push(self.shape(shape)?);
+            origins.push(Origin::element(shape.tag()));
         }
         object.finish()?;
         let index = GroupIndex(self.description.groups.len() as u32);
         self.description.groups.push(group);
+        self.origins.groups.push(origins);
         self.groups.insert(object.index, index);
         Ok(index)
     }

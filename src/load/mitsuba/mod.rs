@@ -12,6 +12,7 @@ mod attributes;
 mod bsdf;
 mod colour;
 mod document;
+mod doubts;
 mod emitter;
 mod files;
 mod film;
@@ -40,10 +41,11 @@ use std::{collections::HashMap, path::Path};
 use files::Files;
 use properties::Object;
 pub(super) use single::{read_by_id, read_line};
+pub(super) use source::Span;
 use vocabulary::Class;
 
-use super::{LoadError, Loaded};
-use crate::scene::{Emitter, Integrator, Material, MaterialIndex, Rgb, SceneDescription, Shape, Texture};
+use super::{LoadError, Loaded, Origin, Origins};
+use crate::scene::{Emitter, Material, MaterialIndex, Rgb, SceneDescription, Shape, Texture};
 
 /// Reads a scene; `defines` are stronger than `<default>`.
 pub(super) fn read_scene(path: &Path, defines: &[(String, String)]) -> Result<Loaded, LoadError> {
@@ -53,13 +55,14 @@ pub(super) fn read_scene(path: &Path, defines: &[(String, String)]) -> Result<Lo
     builder.scene(Object::root(&document))?;
     let mut warnings = builder.files.warnings;
     warnings.extend(document.warnings.take());
-    Ok(Loaded { description: builder.description, warnings })
+    Ok(Loaded { description: builder.description, warnings, origins: builder.origins })
 }
 
 #[derive(Default)]
 struct Builder {
     description: SceneDescription,
     files: Files,
+    origins: Origins,
     materials: Materials,
     groups: group::Groups,
     /// Is there a sensor yet?
@@ -72,8 +75,9 @@ impl Builder {
         match scene.child(Class::Integrator)? {
             Some(integrator) => self.description.integrator = integrator::build(integrator, &mut self.files)?,
             None => {
-                let warning =
-                    scene.warning("no integrator is given: `path` without a limit of depth is used");
+                let warning = scene
+                    .warning("no integrator is given: `path` without a limit of depth is used")
+                    .help("write <integrator type=\"path\"/>");
                 self.files.warnings.push(warning);
             }
         }
@@ -88,6 +92,7 @@ impl Builder {
                 }
                 _ => {
                     self.meter(shape)?;
+                    self.origins.shapes.push(Origin::element(shape.tag()));
                     let shape = self.shape(shape)?;
                     self.description.shapes.push(shape);
                 }
@@ -99,8 +104,6 @@ impl Builder {
                  and a `film`",
             ));
         }
-        // An `area` emitter that shapes refer to may be defined here without shining here.
-        let is_definition = |emitter: &Object| emitter.plugin() == "area" && emitter.is_referenced();
         for object in scene.children(Class::Emitter).into_iter().filter(|emitter| !is_definition(emitter)) {
             let emitter = emitter::build(object, &mut self.files)?;
             let is_environment = |emitter: &Emitter| {
@@ -116,6 +119,7 @@ impl Builder {
         scene.finish()?;
         self.description.materials = std::mem::take(&mut self.materials.list);
         self.warn_of_darkness(scene);
+        self.warn_of_doubts(scene);
         Ok(())
     }
 
@@ -135,7 +139,8 @@ impl Builder {
         self.sees = true;
         self.description.sensor = sensor::build(first, &mut self.files)?;
         for other in others {
-            self.files.warnings.push(other.warning("the first sensor is used, this one is not"));
+            let warning = other.warning("the first sensor is used, this one is not");
+            self.files.warnings.push(warning.label("not used").help("remove it, or let it stand first"));
         }
         Ok(())
     }
@@ -155,31 +160,22 @@ impl Builder {
         }
         Ok(())
     }
+}
 
-    fn warn_of_idleness(&mut self, object: Object) {
-        let name = object.id().map_or("without an id".into(), |id| format!("`{id}`"));
-        let warning = object.warning(format!("the {} {name} is never used", object.class()));
-        self.files.warnings.push(warning);
-    }
-
-    fn warn_of_darkness(&mut self, scene: Object) {
-        let SceneDescription { integrator, shapes, emitters, .. } = &self.description;
-        let dark = emitters.is_empty() && shapes.iter().all(|shape| shape.radiance.is_none());
-        if dark && !matches!(integrator, Integrator::Aov { .. }) {
-            self.files.warnings.push(scene.warning("nothing in the scene shines: the picture will be black"));
-        }
-    }
+/// An `area` emitter that shapes refer to may be defined in the scene without shining there.
+fn is_definition(emitter: &Object) -> bool {
+    emitter.plugin() == "area" && emitter.is_referenced()
 }
 
 /// The materials so far; objects that several shapes refer to are built once.
 #[derive(Default)]
 struct Materials {
     list: Vec<Material>,
-    places: HashMap<Origin, MaterialIndex>,
+    places: HashMap<Source, MaterialIndex>,
 }
 
 #[derive(PartialEq, Eq, Hash)]
-enum Origin {
+enum Source {
     /// Place in the document.
     Object(usize),
     /// No BSDF was given; on a shape that shines, or on one that does not.
@@ -188,28 +184,28 @@ enum Origin {
 
 impl Materials {
     fn index_of(&mut self, bsdf: Object, files: &mut Files) -> Result<MaterialIndex, LoadError> {
-        let origin = Origin::Object(bsdf.index);
-        match self.places.get(&origin) {
+        let source = Source::Object(bsdf.index);
+        match self.places.get(&source) {
             Some(&place) => Ok(place),
-            None => Ok(self.add(origin, bsdf::build(bsdf, files)?)),
+            None => Ok(self.add(source, bsdf::build(bsdf, files)?)),
         }
     }
 
     fn default(&mut self, shines: bool) -> MaterialIndex {
-        let origin = Origin::Default { shines };
-        match self.places.get(&origin) {
+        let source = Source::Default { shines };
+        match self.places.get(&source) {
             Some(&place) => place,
             None => {
                 let reflectance = Texture::Constant(Rgb::splat(if shines { 0.0 } else { 0.5 }));
-                self.add(origin, Material::Diffuse { reflectance })
+                self.add(source, Material::Diffuse { reflectance })
             }
         }
     }
 
-    fn add(&mut self, origin: Origin, material: Material) -> MaterialIndex {
+    fn add(&mut self, source: Source, material: Material) -> MaterialIndex {
         let place = MaterialIndex(self.list.len() as u32);
         self.list.push(material);
-        self.places.insert(origin, place);
+        self.places.insert(source, place);
         place
     }
 }

@@ -57,6 +57,11 @@ impl<'d> Object<'d> {
         }
     }
 
+    /// The element's name.
+    pub(super) fn tag(self) -> Span {
+        self.node().tag.clone()
+    }
+
     /// An error that underlines the element's name.
     pub(super) fn error(self, message: impl Into<String>) -> LoadError {
         self.node().tag.error(message)

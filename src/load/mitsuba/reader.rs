@@ -6,7 +6,7 @@ use std::{
     cell::{Cell, RefCell},
     fs,
     path::{Path, PathBuf},
-    rc::Rc,
+    sync::Arc,
 };
 
 use roxmltree::Node as XmlNode;
@@ -65,7 +65,7 @@ impl Reader {
     /// The place of an object in the document, and its attribute `name`.
     fn read_object(
         &mut self,
-        source: &Rc<Source>,
+        source: &Arc<Source>,
         xml: XmlNode,
         class: Class,
         depth: usize,
@@ -112,7 +112,7 @@ impl Reader {
     /// What stands inside an object element.
     fn read_entries(
         &mut self,
-        source: &Rc<Source>,
+        source: &Arc<Source>,
         parent: XmlNode,
         depth: usize,
         entries: &mut Vec<Entry>,
@@ -125,7 +125,7 @@ impl Reader {
 
     fn read_child(
         &mut self,
-        source: &Rc<Source>,
+        source: &Arc<Source>,
         xml: XmlNode,
         depth: usize,
         entries: &mut Vec<Entry>,
@@ -168,7 +168,7 @@ impl Reader {
         Ok(())
     }
 
-    fn read_property(&mut self, source: &Rc<Source>, xml: XmlNode) -> Result<Entry, LoadError> {
+    fn read_property(&mut self, source: &Arc<Source>, xml: XmlNode) -> Result<Entry, LoadError> {
         let mut attributes = self.attributes(source, xml)?;
         let element = attributes.element.clone();
         let name = attributes.require("name")?;
@@ -214,7 +214,7 @@ impl Reader {
         Ok(new_entry(Some(name), text.span, value))
     }
 
-    fn read_default(&mut self, source: &Rc<Source>, xml: XmlNode) -> Result<(), LoadError> {
+    fn read_default(&mut self, source: &Arc<Source>, xml: XmlNode) -> Result<(), LoadError> {
         let mut attributes = self.attributes(source, xml)?;
         let name = attributes.require("name")?;
         let value = attributes.require("value")?;
@@ -227,7 +227,7 @@ impl Reader {
         Ok(())
     }
 
-    fn attributes(&mut self, source: &Rc<Source>, xml: XmlNode) -> Result<Attributes, LoadError> {
+    fn attributes(&mut self, source: &Arc<Source>, xml: XmlNode) -> Result<Attributes, LoadError> {
         let list = xml
             .attributes()
             .map(|attribute| {

@@ -12,7 +12,7 @@ use std::{
     cell::{Cell, RefCell},
     ops::Range,
     path::Path,
-    rc::Rc,
+    sync::Arc,
 };
 
 use super::{
@@ -68,7 +68,7 @@ pub(in crate::load) fn read_line(line: &str) -> Result<(Material, Vec<Warning>),
 }
 
 /// `name=value`.
-fn entry(source: &Rc<Source>, range: Range<usize>) -> Result<Entry, LoadError> {
+fn entry(source: &Arc<Source>, range: Range<usize>) -> Result<Entry, LoadError> {
     let text = &source.text[range.clone()];
     let Some((name, value)) = text.split_once('=').filter(|(name, _)| !name.trim().is_empty()) else {
         return Err(source

@@ -4,20 +4,20 @@ use std::{
     fs,
     ops::Range,
     path::{Path, PathBuf},
-    rc::Rc,
+    sync::Arc,
 };
 
-use crate::load::{LoadError, Warning, error};
+use crate::load::{LoadError, Warning};
 
 /// A text file in memory.
 #[derive(Debug)]
 pub(super) struct Source {
     path: PathBuf,
-    pub(super) text: String,
+    pub(super) text: Arc<str>,
 }
 
 impl Source {
-    pub(super) fn read(path: &Path) -> Result<Rc<Self>, LoadError> {
+    pub(super) fn read(path: &Path) -> Result<Arc<Self>, LoadError> {
         let bytes = fs::read(path).map_err(|e| LoadError::new(path, format!("can't be read: {e}")))?;
         let text = String::from_utf8(bytes).map_err(|e| {
             LoadError::new(
@@ -26,28 +26,28 @@ impl Source {
             )
             .help("save the file as UTF-8")
         })?;
-        Ok(Rc::new(Self { path: path.to_owned(), text }))
+        Ok(Arc::new(Self { path: path.to_owned(), text: text.into() }))
     }
 
     /// Text that is in no file.
-    pub(super) fn named(name: &Path, text: &str) -> Rc<Self> {
-        Rc::new(Self { path: name.to_owned(), text: text.to_owned() })
+    pub(super) fn named(name: &Path, text: &str) -> Arc<Self> {
+        Arc::new(Self { path: name.to_owned(), text: text.into() })
     }
 
     /// An error that underlines a range of bytes.
     pub(super) fn range_error(&self, range: Range<usize>, message: impl Into<String>) -> LoadError {
-        LoadError::at(&self.path, &self.text, range, message)
+        LoadError::within(&self.path, &self.text, range, message)
     }
 
-    pub(super) fn span(self: &Rc<Self>, range: Range<usize>) -> Span {
-        Span { source: Rc::clone(self), range }
+    pub(super) fn span(self: &Arc<Self>, range: Range<usize>) -> Span {
+        Span { source: Arc::clone(self), range }
     }
 }
 
 /// A piece of a text file, to point at.
 #[derive(Clone, Debug)]
-pub(super) struct Span {
-    source: Rc<Source>,
+pub(in crate::load) struct Span {
+    source: Arc<Source>,
     range: Range<usize>,
 }
 
@@ -58,9 +58,8 @@ impl Span {
     }
 
     /// A warning about this piece.
-    pub(super) fn warning(&self, message: impl Into<String>) -> Warning {
-        let place = error::place(&self.source.path, &self.source.text, self.range.start);
-        Warning { place, message: message.into() }
+    pub(in crate::load) fn warning(&self, message: impl Into<String>) -> Warning {
+        Warning::within(&self.source.path, &self.source.text, self.range.clone(), message)
     }
 
     /// A name taken as relative to the folder of this piece's file.

@@ -1,6 +1,6 @@
 //! XML as the reader wants it: elements, places and errors.
 
-use std::rc::Rc;
+use std::sync::Arc;
 
 use roxmltree::{Node as XmlNode, ParsingOptions};
 
@@ -43,14 +43,14 @@ fn byte_of(text: &str, row: u32, column: u32) -> usize {
 }
 
 /// Of the element's name.
-pub(super) fn tag_span(source: &Rc<Source>, xml: XmlNode) -> Span {
+pub(super) fn tag_span(source: &Arc<Source>, xml: XmlNode) -> Span {
     let start = xml.range().start + '<'.len_utf8();
     source.span(start..start + xml.tag_name().name().len())
 }
 
 /// The child elements; text between them is an error, comments are not.
 pub(super) fn elements<'a, 'i>(
-    source: &Rc<Source>,
+    source: &Arc<Source>,
     parent: XmlNode<'a, 'i>,
 ) -> Result<Vec<XmlNode<'a, 'i>>, LoadError> {
     let stray = |child: &XmlNode| child.is_text() && child.text().is_some_and(|t| !t.trim().is_empty());
@@ -67,7 +67,7 @@ pub(super) fn elements<'a, 'i>(
 }
 
 /// Refuses elements inside one that takes none.
-pub(super) fn no_children(source: &Rc<Source>, xml: XmlNode) -> Result<(), LoadError> {
+pub(super) fn no_children(source: &Arc<Source>, xml: XmlNode) -> Result<(), LoadError> {
     match elements(source, xml)?.first() {
         None => Ok(()),
         Some(&child) => Err(tag_span(source, child).error(format!(

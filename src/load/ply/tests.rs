@@ -134,7 +134,7 @@ fn wrong_rows_are_named() {
 fn faces_of_two_corners_are_dropped_and_degenerate_ones_stay() {
     let (mesh, warnings) = load(ascii("0 0 0\n\n1 0 0\n0 1 0\n2 0 1\n3 1 1 1\n0\n", 3, 3));
     assert_eq!(mesh.unwrap().triangles, [[1, 1, 1]]);
-    assert_eq!(warnings[0].message, "2 faces with fewer than 3 corners were dropped");
+    assert_eq!(warnings[0].message(), "2 faces with fewer than 3 corners were dropped");
 }
 
 #[test]

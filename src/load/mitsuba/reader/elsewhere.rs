@@ -11,7 +11,7 @@ impl Reader {
     /// Reads the elements of another file as if they stood here.
     pub(super) fn include(
         &mut self,
-        source: &Rc<Source>,
+        source: &Arc<Source>,
         xml: XmlNode,
         depth: usize,
         entries: &mut Vec<Entry>,
@@ -49,7 +49,7 @@ impl Reader {
     }
 
     /// `<path>`: a folder in which files are looked for from here on.
-    pub(super) fn path(&mut self, source: &Rc<Source>, xml: XmlNode) -> Result<(), LoadError> {
+    pub(super) fn path(&mut self, source: &Arc<Source>, xml: XmlNode) -> Result<(), LoadError> {
         let mut attributes = self.attributes(source, xml)?;
         let value = attributes.require("value")?;
         let tag = attributes.tag.clone();
@@ -62,7 +62,7 @@ impl Reader {
     }
 
     /// `<alias>`: another name for an object that has one.
-    pub(super) fn alias(&mut self, source: &Rc<Source>, xml: XmlNode) -> Result<(), LoadError> {
+    pub(super) fn alias(&mut self, source: &Arc<Source>, xml: XmlNode) -> Result<(), LoadError> {
         let mut attributes = self.attributes(source, xml)?;
         let id = attributes.require("id")?;
         let other = attributes.require("as")?;
