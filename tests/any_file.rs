@@ -9,6 +9,7 @@ use std::{
     fs,
     panic::catch_unwind,
     path::{Path, PathBuf},
+    thread,
     time::{Duration, Instant},
 };
 
@@ -20,7 +21,6 @@ use packlight::render::{Settings, render};
 use packlight::scene::{Film, Integrator, MerlTable};
 use packlight::verify::aim::Random;
 use program::folder;
-use rayon::prelude::*;
 
 /// Longest that a file of these sizes may take.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -174,11 +174,11 @@ fn damage(name: &str, goods: &[PathBuf]) {
         .filter(|path| path.exists())
         .map(|path| (path, fs::read(path).expect("readable")))
         .collect();
-    // One thread a file at a time: some take a tenth of a second, for the tables of their materials.
-    let damage_one = |i: usize| {
+    // Some take a tenth of a second, for the tables of their materials. Not on the pool that compiles and renders them:
+    // a thread of it that waits would begin the next file in the middle of one.
+    let damage_one = |thread: usize, i: usize| {
         let (good, bytes) = &goods[i % goods.len()];
         let extension = good.extension().unwrap_or_default();
-        let thread = rayon::current_thread_index().unwrap_or_default();
         let path = folder.join(format!("damaged-{thread}")).with_extension(extension);
         let bytes = damaged(bytes, &mut Random::new(i as u64));
         fs::write(&path, &bytes).expect("writable");
@@ -189,7 +189,16 @@ fn damage(name: &str, goods: &[PathBuf]) {
         })
     };
     let count = if goods.is_empty() { 0 } else { damages() };
-    let outcomes: Vec<Result<bool, String>> = (0..count).into_par_iter().map(damage_one).collect();
+    let threads = thread::available_parallelism().map_or(1, usize::from);
+    let (damage_one, mut outcomes) = (&damage_one, Vec::new());
+    thread::scope(|scope| {
+        let work = |thread| move || (thread..count).step_by(threads).map(|i| damage_one(thread, i)).collect();
+        let started: Vec<_> = (0..threads).map(|thread| scope.spawn(work(thread))).collect();
+        for thread in started {
+            let found: Vec<Result<bool, String>> = thread.join().expect("a thread that ends");
+            outcomes.extend(found);
+        }
+    });
     let used = outcomes.iter().filter(|outcome| **outcome == Ok(true)).count();
     let faults: Vec<&String> = outcomes.iter().filter_map(|outcome| outcome.as_ref().err()).collect();
     println!("{name}: {used} of {count} damaged files were used");
