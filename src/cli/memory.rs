@@ -95,7 +95,7 @@ fn size(argument: &str) -> Result<u64, String> {
         _ => f64::NAN,
     };
     let bytes = digits.trim().parse::<f64>().map_or(f64::NAN, |number| number * unit);
-    match bytes >= 1.0 && bytes < 1e18 {
+    match (1.0..1e18).contains(&bytes) {
         true => Ok(bytes as u64),
         false => Err("expected an amount of memory, as in 2GiB, 512MB or 4096 (bytes)".into()),
     }
