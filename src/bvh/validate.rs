@@ -16,6 +16,8 @@ pub struct Shape {
     pub depth: usize,
     /// Expected node tests of a random ray that meets the root: Σ area(node)/area(root).
     pub node_cost: f64,
+    /// Expected leaves that such a ray comes to: Σ area(leaf)/area(root).
+    pub leaf_cost: f64,
     /// Expected primitive tests of such a ray: Σ area(leaf)·count/area(root).
     pub primitive_cost: f64,
 }
@@ -96,7 +98,9 @@ impl Bvh {
                         }
                         shape.leaves += 1;
                         shape.primitives += count;
-                        shape.primitive_cost += f64::from(bounds.half_area()) / root_area * count as f64;
+                        let chance = f64::from(bounds.half_area()) / root_area;
+                        shape.leaf_cost += chance;
+                        shape.primitive_cost += chance * count as f64;
                     }
                 }
                 union = union.union(bounds);

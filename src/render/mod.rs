@@ -13,6 +13,7 @@ mod connections;
 mod departure;
 mod direct;
 mod frame;
+mod group;
 mod integrator;
 mod irradiance;
 mod layers;
