@@ -40,13 +40,14 @@ impl Ray32 {
     }
 
     /// Can it be traced? Origin, direction and `t_near` are finite, the direction is not zero, and the
-    /// ends are in order.
+    /// ends are in order, neither of them behind the origin: a tree is searched from there.
     pub fn is_valid(&self) -> bool {
         let finite = |v: [f32; 3]| v.iter().all(|x| x.is_finite());
         finite(self.org)
             && finite(self.dir)
             && self.dir != [0.0; 3]
             && self.t_near.is_finite()
+            && self.t_near >= 0.0
             && self.t_near <= self.t_far
     }
 
@@ -170,6 +171,8 @@ mod tests {
             Ray32 { t_near: f32::NEG_INFINITY, t_far: f32::NEG_INFINITY, ..ray() },
             Ray32 { t_far: nan, ..ray() },
             Ray32 { t_near: 2.0, t_far: 1.0, ..ray() },
+            Ray32 { t_near: -0.1, t_far: 0.0, ..ray() },
+            Ray32 { t_near: -f32::MIN_POSITIVE, ..ray() },
         ];
         let mut rays = bad.to_vec();
         rays.insert(3, ray());
