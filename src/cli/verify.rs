@@ -1,5 +1,6 @@
 //! `packlight verify SCENE`: do all ways of tracing it agree, and does nothing leak?
 
+mod against;
 mod exhibit;
 mod findings;
 
@@ -16,12 +17,13 @@ use crate::{
     load::Loaded,
     render::Query,
     verify::{
-        Exhibit, Expected, classes,
+        Class, Exhibit, Expected, classes,
         cracks::{Seams, cracks},
         departures::departures,
         ways::{answers, compare, found},
     },
 };
+use against::{Other, against_embree};
 use findings::{ClassRow, Findings, LeakRow, SelfHitRow};
 
 /// Tests of a ray against a primitive that brute force may take for a class of rays.
@@ -48,6 +50,10 @@ pub(super) struct Arguments {
     /// Folder for what shows a fault, if there is one
     #[arg(long, value_name = "DIR", default_value = ".")]
     into: PathBuf,
+
+    /// Compare nearest hits with those of another program too
+    #[arg(long, value_name = "WHOSE")]
+    against: Option<Other>,
 
     #[command(flatten)]
     threads: ThreadsOption,
@@ -81,13 +87,27 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let findings = arguments.threads.pool()?.install(|| {
         let (Loaded { description, .. }, _) = arguments.source.load()?;
         let scene = compile_with(&description, arguments.quality.quality())?;
+        let classes = match &file {
+            Some(file) => vec![Class { name: "file", query: Query::Closest, rays: file.rays.clone() }],
+            None => classes(&scene, arguments.most as usize),
+        };
+        // Before the others take their time: it may not be there.
+        let against = arguments
+            .against
+            .map(|Other::Embree| against_embree(&scene, classes.iter().map(|class| class.rays.as_slice())));
+        let (against, differs) = against.transpose()?.unzip();
         let (mut findings, exhibit) = match &file {
             Some(file) => arguments.of_file(&scene, &file.rays),
-            None => arguments.of_scene(&scene),
+            None => arguments.of_scene(&scene, &classes),
         };
+        findings.against = against;
+        let origin = || (arguments.source.path.as_path(), arguments.source.options());
         if let Some(exhibit) = exhibit.filter(|_| file.is_none()) {
-            let scene = (arguments.source.path.as_path(), arguments.source.options());
-            findings.failure = Some(exhibit::write(&exhibit, &arguments.into, scene)?);
+            findings.failure = Some(exhibit::write(&exhibit, &arguments.into, origin())?);
+        } else if let Some(exhibit) = differs.flatten().filter(|_| file.is_none()) {
+            let mut written = exhibit::write(&exhibit, &arguments.into, origin())?;
+            written.command += " --against embree";
+            findings.failure = Some(written);
         }
         Ok::<_, Failure>(findings)
     })?;
@@ -100,10 +120,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 impl Arguments {
-    fn of_scene(&self, scene: &Scene) -> (Findings, Option<Exhibit>) {
+    fn of_scene(&self, scene: &Scene, classes: &[Class]) -> (Findings, Option<Exhibit>) {
         let mut findings = Findings::new(self.source.path.display().to_string(), scene.summary());
         let (mut exhibit, mut self_hits) = (None, SelfHitRow::default());
-        for class in classes(scene, self.most as usize) {
+        for class in classes {
             let compared = compare(scene, &class.rays, BRUTE_TESTS, &answers);
             findings.classes.push(ClassRow::new(class.name, &compared));
             exhibit = exhibit.or(compared.exhibit);

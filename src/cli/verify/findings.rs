@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::exhibit::Written;
+use super::{against::AgainstRow, exhibit::Written};
 use crate::{
     cli::{
         failure::Failure,
@@ -23,6 +23,7 @@ pub(super) struct Findings {
     pub(super) classes: Vec<ClassRow>,
     pub(super) leaks: Option<LeakRow>,
     pub(super) self_hits: Option<SelfHitRow>,
+    pub(super) against: Option<AgainstRow>,
     /// Of the rays of a file, those that do not find what they should.
     pub(super) unexpected: Option<u64>,
     pub(super) failure: Option<Written>,
@@ -85,6 +86,7 @@ impl Findings {
             classes: Vec::new(),
             leaks: None,
             self_hits: None,
+            against: None,
             unexpected: None,
             failure: None,
         }
@@ -95,11 +97,13 @@ impl Findings {
         let mismatches: u64 = self.classes.iter().map(|row| row.mismatches).sum();
         let leaks = self.leaks.as_ref().map_or(0, |row| row.leaks);
         let self_hits = self.self_hits.as_ref().map_or(0, |row| row.self_hits);
+        let different = self.against.as_ref().map_or(0, |row| row.different);
         let unexpected = self.unexpected.unwrap_or(0);
         let wrong: Vec<String> = [
             (mismatches, "answer that differs", "answers that differ"),
             (leaks, "leak", "leaks"),
             (self_hits, "self-hit", "self-hits"),
+            (different, "hit that Embree does not have", "hits that Embree does not have"),
             (unexpected, "ray that does not find what it should", "rays that do not find what they should"),
         ]
         .into_iter()
@@ -145,6 +149,9 @@ impl fmt::Display for Findings {
                 grouped(self_hits),
                 counted(rays, "ray")
             )?;
+        }
+        if let Some(against) = &self.against {
+            write!(f, "{against}")?;
         }
         if let Some(unexpected) = self.unexpected {
             writeln!(f, "  unexpected   {}", grouped(unexpected))?;
