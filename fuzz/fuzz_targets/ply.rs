@@ -1,0 +1,5 @@
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    packlight_fuzz::with_file("fuzzed.ply", bytes, packlight_fuzz::show);
+});
