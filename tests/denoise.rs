@@ -108,13 +108,15 @@ fn layers_and_formats_are_those_that_were_asked_for() {
     }
     let folder = folder("denoise/formats");
     let file = |name: &str| path(&folder, name);
+    let both_have = |name: &str, channels: &[&str]| {
+        for end in ["exr", "denoised.exr"] {
+            assert_eq!(names(&file(&format!("{name}.{end}"))), channels, "{name}.{end}");
+        }
+    };
     let few = ["--spp", "4", "--denoise"];
     render(&file("a.exr"), &[&few[..], &["--aov", "depth,normal"]].concat());
     let asked = ["B", "G", "R", "depth.Z", "normal.X", "normal.Y", "normal.Z"];
-    assert_eq!(
-        (names(&file("a.exr")), names(&file("a.denoised.exr"))),
-        (asked.map(String::from).into(), asked.map(String::from).into())
-    );
+    both_have("a", &asked);
     for extension in ["png", "hdr"] {
         render(&file(&format!("b.{extension}")), &few);
         assert!(Path::new(&file(&format!("b.denoised.{extension}"))).exists());
@@ -126,10 +128,7 @@ fn layers_and_formats_are_those_that_were_asked_for() {
     let words = ["render", &grey, "-o", &file("c.exr"), "-q", "--width", "40"];
     let output = packlight(&[&words[..], &few].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    assert_eq!(
-        (names(&file("c.exr")), names(&file("c.denoised.exr"))),
-        (vec!["A".into(), "Y".into()], vec!["A".into(), "Y".into()])
-    );
+    both_have("c", &["A", "Y"]);
 }
 
 #[test]

@@ -168,13 +168,6 @@ impl Info {
     }
 }
 
-impl Info {
-    fn parts(&self) -> String {
-        let part = |&(name, bytes): &(&str, u64)| format!("{name} {}", quantity::memory(bytes));
-        self.memory_parts_bytes.iter().map(part).collect::<Vec<_>>().join(", ")
-    }
-}
-
 fn counts(count: u64, kinds: &BTreeMap<String, u64>) -> String {
     if kinds.is_empty() { grouped(count) } else { format!("{}: {}", grouped(count), kinds::listed(kinds)) }
 }
@@ -233,7 +226,7 @@ impl fmt::Display for Info {
                     .map_or("unknown".into(), |bytes| format!("{} at the peak", quantity::memory(bytes)))
                     + &format!(", about {} to render", quantity::memory(self.memory_budget_bytes)),
             ),
-            ("", self.parts()),
+            ("", memory::listed(&self.memory_parts_bytes)),
             ("film", format!("{} x {}", self.width, self.height)),
             ("samples", format!("{} a pixel, seed {}", self.samples_per_pixel, self.seed)),
             ("sensor", sensor),

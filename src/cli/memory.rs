@@ -53,7 +53,6 @@ impl Expected {
     }
 
     fn refusal(&self, limit: u64) -> String {
-        let has = |name, bytes| format!("{name} {}", quantity::memory(bytes));
         let need = format!(
             "rendering takes about {}, more than the {} of --memory-limit",
             quantity::memory(self.peak()),
@@ -66,7 +65,6 @@ impl Expected {
         }
         let mut parts = self.budget.parts();
         parts.sort_by_key(|&(_, bytes)| std::cmp::Reverse(bytes));
-        let largest: Vec<String> = parts[..3].iter().map(|&(name, bytes)| has(name, bytes)).collect();
         let out = match parts[0].0 {
             "film" => "render a smaller picture (--width), a crop, or fewer channels",
             "textures" => "use smaller pictures",
@@ -75,8 +73,14 @@ impl Expected {
             "program" => "use fewer --threads",
             _ => "use simpler meshes, or instances of one that stands in many places",
         };
-        format!("{need}; most of it: {}; raise the limit, or {out}", largest.join(", "))
+        format!("{need}; most of it: {}; raise the limit, or {out}", listed(&parts[..3]))
     }
+}
+
+/// Parts of a budget, for people.
+pub(super) fn listed(parts: &[(&str, u64)]) -> String {
+    let part = |&(name, bytes): &(&str, u64)| format!("{name} {}", quantity::memory(bytes));
+    parts.iter().map(part).collect::<Vec<_>>().join(", ")
 }
 
 /// For clap: `2GiB`, `512MB`, `1.5G`, `4096`. Units of 1024 end in `iB` or are one letter, of 1000 end in `B`.

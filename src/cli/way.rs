@@ -1,6 +1,6 @@
 //! `--way`: how rays go through the tree.
 
-use clap::ValueEnum;
+use clap::{ValueEnum, builder::PossibleValue};
 
 use crate::{bvh::Way, render::Route};
 
@@ -28,29 +28,38 @@ impl From<WayName> for Way {
     }
 }
 
-/// A [`Route`] as it is typed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+/// A [`Route`] as it is typed: a way, or none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RouteName {
-    /// Whatever suits each 64 rays
-    Chosen,
-    /// Tiles of 64 rays from one point into one octant; others as packets
-    Tile,
-    /// Packets of 8
-    Packet,
-    /// 16 single rays in turn
-    Wave,
-    /// One ray after the other
+    Stream(WayName),
     Single,
+}
+
+impl ValueEnum for RouteName {
+    fn value_variants<'a>() -> &'a [Self] {
+        const ALL: [RouteName; 5] = [
+            RouteName::Stream(WayName::Chosen),
+            RouteName::Stream(WayName::Tile),
+            RouteName::Stream(WayName::Packet),
+            RouteName::Stream(WayName::Wave),
+            RouteName::Single,
+        ];
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        match self {
+            Self::Stream(way) => way.to_possible_value(),
+            Self::Single => Some(PossibleValue::new("single").help("One ray after the other")),
+        }
+    }
 }
 
 impl From<RouteName> for Route {
     fn from(name: RouteName) -> Self {
-        Self::Stream(match name {
-            RouteName::Chosen => Way::Chosen,
-            RouteName::Tile => Way::Tile,
-            RouteName::Packet => Way::Packet,
-            RouteName::Wave => Way::Wave,
-            RouteName::Single => return Self::Single,
-        })
+        match name {
+            RouteName::Stream(way) => Self::Stream(way.into()),
+            RouteName::Single => Self::Single,
+        }
     }
 }

@@ -114,11 +114,10 @@ impl Instances {
 
     /// Triangles without area, group by group.
     pub(super) fn degenerate(&self) -> impl Iterator<Item = Degenerate> + '_ {
-        let of_group = |(index, group): (u32, &'_ Group)| {
-            let index = GroupIndex(index);
-            group.degenerate.iter().map(move |&one| Degenerate { group: Some(index), ..one }).collect()
-        };
-        (0..).zip(&self.groups).flat_map(move |group| -> Vec<_> { of_group(group) })
+        (0..).zip(&self.groups).flat_map(|(index, group)| {
+            let group_index = Some(GroupIndex(index));
+            group.degenerate.iter().map(move |&one| Degenerate { group: group_index, ..one })
+        })
     }
 
     /// Adds groups and instances to what has been compiled; `share` is the part of the upper tree's bytes that

@@ -38,7 +38,7 @@ struct Counts {
     shapes: u64,
     triangles: u64,
     vertices: u64,
-    /// Triangles that shine, or have attributes: they are kept a second time.
+    /// Triangles that shine: they are kept a second time.
     kept: u64,
     spheres: u64,
     canonicals: u64,

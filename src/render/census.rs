@@ -22,13 +22,7 @@ use super::{
     wavefront::Wavefront,
     with_integrator,
 };
-use crate::{
-    bvh::{Tracer, Traversal},
-    compile::Scene,
-    film::Tile,
-    geometry::PrimitiveId,
-    simd::LANES,
-};
+use crate::{bvh::Tracer, compile::Scene, film::Tile, geometry::PrimitiveId, simd::LANES};
 
 /// What the rays of one sample of each pixel do.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -150,7 +144,7 @@ pub fn census(scene: &Scene) -> Census {
 pub(super) struct Probe {
     tracer: Tracer<Counts>,
     /// For single rays.
-    alone: Traversal<Counts>,
+    alone: Tracer<Counts>,
     pub(super) census: Census,
 }
 
@@ -158,7 +152,7 @@ impl Probe {
     /// Nothing seen yet.
     pub(super) fn new() -> Self {
         let counts = Counts::default();
-        Self { tracer: Tracer::new(counts), alone: Traversal::new(counts), census: Census::default() }
+        Self { tracer: Tracer::new(counts), alone: Tracer::new(counts), census: Census::default() }
     }
 
     /// [`trace::closest`], counted.
@@ -169,13 +163,8 @@ impl Probe {
         hits: &mut Hits<'a>,
         depth: u32,
     ) -> LaneUse {
+        trace::closest(scene, paths, hits, Route::Single, &mut self.alone);
         let lanes = trace::closest(scene, paths, hits, Route::default(), &mut self.tracer);
-        for first in (0..paths.len).step_by(LANES) {
-            let rays = paths.rays(first);
-            for lane in 0..LANES.min(paths.len - first) {
-                scene.closest_hit(&rays.lane(lane), &mut self.alone);
-            }
-        }
         self.census.vertices.push(paths.len as u64);
         let crowd = self.crowd(paths.len, lanes);
         *(if depth == 0 { &mut self.census.camera } else { &mut self.census.bounce }) += crowd;
@@ -187,7 +176,7 @@ impl Probe {
         for first in (0..connections.len).step_by(LANES) {
             let rays = connections.rays(first);
             for lane in 0..LANES.min(connections.len - first) {
-                self.census.blocked += u64::from(scene.occluded(&rays.lane(lane), &mut self.alone));
+                self.census.blocked += u64::from(scene.occluded(&rays.lane(lane), &mut self.alone.traversal));
             }
         }
         let lanes = trace::occluded(scene, connections, Route::default(), &mut self.tracer);
@@ -201,7 +190,7 @@ impl Probe {
         Crowd {
             rays: rays as u64,
             packets,
-            alone: std::mem::take(&mut self.alone.tally),
+            alone: std::mem::take(&mut self.alone.traversal.tally),
             together: std::mem::take(&mut self.tracer.traversal.tally),
         }
     }

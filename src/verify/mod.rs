@@ -2,7 +2,8 @@
 //!
 //! [`ways`]: every way through the tree, and testing every primitive, against single rays. [`cracks`]: rays
 //! at edges and vertices that are shared. [`departures`]: rays that leave a triangle and must not meet it
-//! again. [`against`]: somebody else's hits ([`embree`]). What is wrong is handed out as an [`Exhibit`], as small as it shows.
+//! again. [`against`]: somebody else's hits ([`embree`]). What is wrong is handed out as an [`Exhibit`], as
+//! small as it shows.
 
 pub mod against;
 pub mod aim;

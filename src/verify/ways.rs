@@ -104,15 +104,6 @@ pub fn answers(scene: &Scene, by: By, query: Query, rays: &[Ray32]) -> Vec<Answe
     }
 }
 
-/// The nearest hits of a stream of rays.
-pub fn hits(scene: &Scene, by: By, rays: &[Ray32]) -> Vec<Hit> {
-    let of_bits = |[t, u, v, primitive]: Answer| {
-        let [t, u, v] = [t, u, v].map(f32::from_bits);
-        Hit { t, u, v, primitive: PrimitiveId(primitive) }
-    };
-    answers(scene, by, Query::Closest, rays).into_iter().map(of_bits).collect()
-}
-
 /// How many rays do not find what they should, by single rays.
 pub fn found(scene: &Scene, rays: &[Ray32], expected: Expected) -> u64 {
     let blocked = answers(scene, By::Single, Query::Any, rays);

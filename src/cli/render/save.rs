@@ -28,18 +28,23 @@ pub(super) struct Ended<'a> {
 impl Ended<'_> {
     /// Writes it as it was rendered; and then, if that is asked for, without noise.
     pub(super) fn save(&self) -> Result<(Statistics, Option<Denoised>), Failure> {
-        let Self { arguments, output, frame, name, denoiser, .. } = self;
+        let Self { arguments, output, scene, frame, name, denoiser } = self;
         let coverage = frame.coverage();
         let is_part =
             output.format == Format::Exr && (frame.plan().shard != Shard::WHOLE || !coverage.complete);
         let rendered = frame.develop();
-        let denoiser = denoiser.map(|denoiser| (denoiser, rendered.clone()));
+        let settings = arguments.settings();
+        let denoiser = denoiser.map(|denoiser| (denoiser, rendered.clone().with_alpha(scene, &settings)));
         let besides = match denoiser {
             Some(_) => denoised::besides(&arguments.layers()),
             None => Vec::new(),
         };
         // A part keeps colours, and all layers, to go on from; only a picture has the film's format.
-        let rendered = if is_part { rendered } else { self.formatted(rendered, &besides) };
+        let rendered = match &denoiser {
+            _ if is_part => rendered,
+            Some((_, noisy)) => self.shown(noisy.clone(), &besides),
+            None => self.shown(rendered.with_alpha(scene, &settings), &besides),
+        };
         let statistics = rendered.statistics;
         let (samples, facts) = (frame.samples(), name.facts);
         let about = About { scene: name.scene, facts, samples, statistics: &statistics, coverage };
@@ -47,14 +52,14 @@ impl Ended<'_> {
         self.write(&rendered, &style, is_part)?;
         let Some((denoiser, noisy)) = denoiser else { return Ok((statistics, None)) };
         let (denoised, picture) = Denoised::of(denoiser, &noisy.picture, &output.path)?;
-        let clean = self.formatted(Rendered { picture, ..noisy }, &besides);
+        let clean = self.shown(Rendered { picture, ..noisy }, &besides);
         denoised.save(&clean.picture, &output.path, style)?;
         Ok((statistics, Some(denoised)))
     }
 
-    /// In the film's format, without layers that nobody asked for.
-    fn formatted(&self, rendered: Rendered, besides: &[AovChannel]) -> Rendered {
-        let Rendered { picture, statistics } = rendered.formatted(self.scene, &self.arguments.settings());
+    /// In the film's colours, without layers that nobody asked for.
+    fn shown(&self, rendered: Rendered, besides: &[AovChannel]) -> Rendered {
+        let Rendered { picture, statistics } = rendered.recoloured(self.scene.film.format);
         Rendered { picture: denoised::without(picture, besides), statistics }
     }
 

@@ -6,7 +6,6 @@ use clap::ValueEnum;
 use serde::Serialize;
 
 use crate::{
-    bvh::Way,
     cli::{
         failure::Failure,
         quantity::{counted, grouped},
@@ -18,7 +17,6 @@ use crate::{
         against::{Against, compare},
         embree::Embree,
         scene_of,
-        ways::{By, hits},
     },
 };
 
@@ -69,7 +67,9 @@ pub(super) fn against_embree<'a>(
         scene_of(&triangles).ok_or_else(|| refuse("the triangles can't be compiled by themselves".into()))?;
     let (mut sum, mut exhibit) = (Against::default(), None);
     for rays in classes {
-        let (a, b) = (hits(&ours, By::Stream(Way::Chosen), rays), embree.closest_hits(rays));
+        let mut a = vec![Hit::MISS; rays.len()];
+        ours.closest_hits(rays, &mut a);
+        let b = embree.closest_hits(rays);
         let found = compare(&triangles, rays, &a, &b);
         if let Some(first) = found.first.filter(|_| exhibit.is_none()) {
             exhibit = Some(show(&triangles, rays[first], [a[first], b[first]]));
