@@ -32,7 +32,7 @@ use wave::Wave;
 use glam::Vec3;
 
 use crate::geometry::{Hit, Pencils, PrimitiveId, Ray, Rayx8};
-use crate::simd::{Bits, LANES, Mask8, Real, f32x8, transpose, u32x8};
+use crate::simd::{Bits, LANES, Mask8, Real, f32x8, prefetch, transpose, u32x8};
 
 /// Slots in a block. A leaf never crosses from one block into the next.
 pub const BLOCK: usize = 8;
@@ -181,6 +181,15 @@ impl Bvh {
     #[inline]
     fn is_far(&self) -> bool {
         self.nodes.len() >= CACHED
+    }
+
+    /// Asks memory for what is behind a child, while there is something else to do. An address is chosen, not a
+    /// branch.
+    #[inline]
+    fn ask_for<L: Leaves>(&self, child: Child, leaves: &L) {
+        let node = self.nodes.as_ptr().wrapping_add(child.index()).cast();
+        let address = if child.is_leaf_or_absent() { leaves.address(child.slot()) } else { node };
+        prefetch::<5>(address);
     }
 
     /// The nodes; the root is the first. Empty if there is nothing to hit.

@@ -62,6 +62,7 @@ impl Bvh {
                             mask = rays_enter(node, place, &beams, packets, hits, mask);
                         }
                         if mask != 0 {
+                            self.ask_for(child, leaves);
                             let mut at = top;
                             while at > bottom && stack[at - 1].1 < enters[place] {
                                 (stack[at], masks[at]) = (stack[at - 1], masks[at - 1]);

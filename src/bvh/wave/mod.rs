@@ -10,8 +10,7 @@
 mod feed;
 mod slot;
 
-use super::{Bvh, Child, Leaves, Node, Stream, Tally, cost::Cost, run::Runs};
-use crate::simd::prefetch;
+use super::{Bvh, Child, Leaves, Stream, Tally, cost::Cost, run::Runs};
 use feed::Feed;
 use slot::Slot;
 
@@ -110,7 +109,9 @@ impl Bvh {
                 let slot = &mut slots[which];
                 tally.node(1);
                 slot.step::<ANY>(&self.nodes[slot.child.index()]);
-                ask_for::<ASK, L>(slot.child, &self.nodes, leaves);
+                if ASK {
+                    self.ask_for(slot.child, leaves);
+                }
                 sets.insert(which, slot.child);
             }
             nodes = sets.nodes(nodes);
@@ -126,7 +127,9 @@ impl Bvh {
                     runs.occluder.remember(leaf);
                     slot.child = Child::ABSENT;
                 }
-                ask_for::<ASK, L>(slot.child, &self.nodes, leaves);
+                if ASK {
+                    self.ask_for(slot.child, leaves);
+                }
                 sets.insert(which, slot.child);
             }
             nodes |= sets.nodes(at_leaves);
@@ -152,15 +155,4 @@ impl Bvh {
             runs.learn_alone::<ANY>(cost, rays, kinds);
         }
     }
-}
-
-/// Asks for a node or a block while other slots take their turn. An address is chosen, not a branch.
-#[inline]
-fn ask_for<const ASK: bool, L: Leaves>(child: Child, nodes: &[Node], leaves: &L) {
-    if !ASK {
-        return;
-    }
-    let node = nodes.as_ptr().wrapping_add(child.index()).cast();
-    let address = if child.is_leaf_or_absent() { leaves.address(child.slot()) } else { node };
-    prefetch::<5>(address);
 }
