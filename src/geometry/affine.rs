@@ -79,3 +79,24 @@ impl<R: Real> AffineLanes<R> {
         self.reach(p) + self.offset.abs()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DMat3;
+
+    use super::*;
+
+    #[test]
+    fn normals_go_back_by_the_transpose_and_reach_has_no_signs() {
+        // Integers: nothing is rounded.
+        let m = DMat3::from_cols_array(&[1.0, -2.0, 3.0, -4.0, 5.0, -6.0, 7.0, 8.0, -9.0]);
+        let map = DAffine3 { matrix3: m, translation: glam::DVec3::new(10.0, -20.0, 30.0) };
+        let (map, v) = (AffineLanes::<f32>::splat(&Affine::from(&map)), Vec3::new(2.0, -3.0, 5.0));
+        assert_eq!(Vec3::from(map.direction(v.into())), (m * v.as_dvec3()).as_vec3());
+        assert_eq!(Vec3::from(map.point(v.into())), Vec3::new(59.0, 1.0, 9.0));
+        assert_eq!(Vec3::from(map.normal_back(v.into())), (m.transpose() * v.as_dvec3()).as_vec3());
+        let reach = Vec3::new(2.0 + 12.0 + 35.0, 4.0 + 15.0 + 40.0, 6.0 + 18.0 + 45.0);
+        assert_eq!(Vec3::from(map.reach(v.into())), reach);
+        assert_eq!(Vec3::from(map.magnitude(v.into())), reach + Vec3::new(10.0, 20.0, 30.0));
+    }
+}

@@ -76,5 +76,42 @@ mod tests {
         assert_eq!(crossing(org, dir, [a, b, b * 2.0]), None);
         assert_eq!(crossing(org, Vec3::X, [a, b, c]), None);
         assert_eq!(crossing(org, dir, [a + 1.0, b, c]), None);
+        // Along each axis, where all other components are 0.
+        for turn in 0..3 {
+            let turned = |v: Vec3| Vec3::from_array(std::array::from_fn(|i| v[(i + turn) % 3]));
+            let [a, b, c] = [turned(a), turned(b), turned(c)];
+            assert_eq!(crossing(turned(org), turned(dir), [a, b, c]), Some((2.0, 0.25, 0.5)), "{turn}");
+        }
+    }
+
+    /// Rays along every axis, and between them, through points that are known, inside and outside.
+    #[test]
+    fn points_are_found_whatever_the_greatest_component() {
+        let mut random = Random::new(23);
+        let mut crossed = 0;
+        for _ in 0..20_000 {
+            let [a, b, c, org] = std::array::from_fn(|_| random.vector());
+            let (u, v) = (random.signed(), random.signed());
+            let (e1, e2) = (b - a, c - a);
+            let dir = (a + e1 * u + e2 * v - org) * (1.5 + random.signed());
+            // Neither flat nor edge-on, and not so near to an edge that rounding would tell.
+            let steep = e1.cross(e2).dot(dir).abs() > 0.05 * e1.length() * e2.length() * dir.length();
+            let least = u.min(v).min(1.0 - u - v);
+            if !steep || dir.length() < 0.1 || least.abs() < 1e-3 {
+                continue;
+            }
+            let want = DVec3::new(
+                f64::from((a + e1 * u + e2 * v - org).length() / dir.length()),
+                u.into(),
+                v.into(),
+            );
+            let got = crossing(org, dir, [a, b, c]).map(|(t, u, v)| Vec3::new(t, u, v).as_dvec3());
+            assert_eq!(got.is_some(), least > 0.0, "{got:?} {want}");
+            if let Some(got) = got {
+                crossed += 1;
+                assert!(got.abs_diff_eq(want, 1e-4 * want.x.max(1.0)), "{got} {want}");
+            }
+        }
+        assert!(crossed > 1000, "{crossed}");
     }
 }

@@ -35,3 +35,26 @@ pub fn offset_origin<R: Real>(
     let distance = R::select(w.dot(n_g).lt(R::zero()), -distance, distance);
     p + n_g.scale(distance)
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+
+    #[test]
+    fn the_origin_moves_by_both_errors_to_the_side_that_the_ray_leaves_by() {
+        let (p, extent) = (Vec3::new(0.5, -2.0, -3.0), Vec3::new(1.0, 2.0, 4.0));
+        let moved =
+            |n: Vec3, w: Vec3| Vec3::from(offset_origin::<f32>(p.into(), extent.into(), n.into(), w.into()));
+        // An ulp of the coordinate along the normal, and four of the size.
+        for (axis, ulps) in [(Vec3::X, 4.5), (Vec3::Y, 10.0), (Vec3::Z, 19.0)] {
+            let distance = axis * (ulps * f32::EPSILON);
+            let leaving = axis + Vec3::new(0.1, -0.2, 0.3);
+            assert_eq!(moved(axis, leaving), p + distance);
+            assert_eq!(moved(axis, -leaving), p - distance);
+            assert_eq!(moved(-axis, leaving), p + distance);
+            assert_eq!(moved(-axis, -leaving), p - distance);
+        }
+    }
+}

@@ -129,3 +129,19 @@ impl Hit {
         self.t < other.t || (self.t == other.t && self.primitive < other.primitive)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_order_of_hits_is_strict() {
+        let hit = |t, primitive| Hit { t, u: 0.5, v: 0.25, primitive: PrimitiveId(primitive) };
+        let ordered = [hit(1.0, 7), hit(2.0, 3), hit(2.0, 4), hit(3.0, 0), Hit::MISS];
+        for (i, a) in ordered.iter().enumerate() {
+            for (j, b) in ordered.iter().enumerate() {
+                assert_eq!(a.closer_than(b), i < j, "{a:?} {b:?}");
+            }
+        }
+    }
+}

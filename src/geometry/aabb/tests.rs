@@ -158,3 +158,16 @@ fn a_box_that_is_met_exactly_is_met_in_floats() {
     }
     assert!(met > 20_000 && missed > 20_000, "{met} {missed}");
 }
+
+#[test]
+fn the_middle_is_between_the_corners_however_far_they_are() {
+    let aabb = Aabb { min: Vec3::new(-1.0, 2.0, -f32::MAX), max: Vec3::new(3.0, 10.0, f32::MAX) };
+    assert_eq!(aabb.centre(), Vec3::new(1.0, 6.0, 0.0));
+}
+
+#[test]
+fn half_of_the_surface_is_three_faces() {
+    let of = |size: [f32; 3]| Aabb { min: Vec3::ONE, max: Vec3::ONE + Vec3::from(size) }.half_area();
+    assert_eq!(of([2.0, 3.0, 5.0]), 6.0 + 15.0 + 10.0);
+    assert_eq!((of([0.0, 3.0, 5.0]), of([2.0, 0.0, 0.0]), Aabb::EMPTY.half_area()), (15.0, 0.0, 0.0));
+}

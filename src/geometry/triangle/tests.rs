@@ -224,3 +224,23 @@ fn hits_are_those_of_double_precision() {
     }
     assert!(hits > 10_000 && misses > 10_000, "{hits} {misses}");
 }
+
+/// What lanes know of a ray before they meet a triangle is no less than what they would know of that triangle.
+#[test]
+fn the_bound_for_all_triangles_is_one_for_each() {
+    let mut random = Random::new(31);
+    for round in 0..40_000 {
+        let scale = [1.0, 1e-4, 1e4, 1e9][round % 4];
+        let away = [0.0, 1.0, 1e3][round % 3];
+        let mut point = || (random.vector() + random.signed() * away) * scale;
+        let [v0, v1, v2, org] = std::array::from_fn(|_| point());
+        let (dir, triangle) = (random.vector(), Triangle::new(v0, v1, v2));
+        let reach = v0.abs().max(v1.abs()).max(v2.abs());
+        let bound: f32 = margin_within(org.into(), dir.into(), reach);
+        let (e, d) = ((v1 - v0).abs() + (v2 - v0).abs(), dir.abs().as_dvec3());
+        let (a, e) = (((org - v0).abs() + e).as_dvec3(), e.as_dvec3());
+        let products = DVec3::new(a.y * e.z + a.z * e.y, a.z * e.x + a.x * e.z, a.x * e.y + a.y * e.x);
+        let margin = 6.0 * f64::from(f32::EPSILON) * d.dot(products);
+        assert!(f64::from(bound * triangle.edges()) >= margin, "{bound} {margin} {triangle:?} {org} {dir}");
+    }
+}
