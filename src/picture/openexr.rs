@@ -100,6 +100,8 @@ pub(super) fn encode(picture: &Picture, style: &ExrStyle) -> Result<Vec<u8>, Str
     image.attributes.display_window = IntegerBounds::from_dimensions(whole);
     let mut file = Cursor::new(Vec::new());
     image.write().non_parallel().to_buffered(&mut file).map_err(|e| e.to_string())?;
+    // What follows copies the file; its numbers need not be there a third time.
+    drop(image);
     exr_header::insert(&file.into_inner(), &style.attributes)
 }
 
