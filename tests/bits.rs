@@ -333,7 +333,7 @@ fn the_matrix_is_whole() {
 #[test]
 fn one_bit_is_a_difference() {
     let channel = |x: f32| packlight::picture::Channel { name: "R".into(), samples: vec![1.0, x] };
-    let picture = |x: f32| Picture { width: 2, height: 1, channels: vec![channel(x)] };
+    let picture = |x: f32| Picture { width: 2, height: 1, channels: vec![channel(x)], place: None };
     assert_eq!(difference(&picture(0.5), &picture(0.5)), None);
     assert!(difference(&picture(0.0), &picture(-0.0)).is_some_and(|text| text.contains("(1, 0)")));
     assert_ne!(hash(&picture(0.0)), hash(&picture(-0.0)));

@@ -332,5 +332,29 @@ fn shells_and_man_are_told_every_command() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let page = fs::read_to_string(folder.join("packlight-render.1")).expect("there is a page");
     assert!(page.contains(".TH") && page.contains("\\-\\-checkpoint"), "{page}");
-    assert!(folder.join("packlight.1").exists());
+    // A page for each command that help lists and each that a page refers to, and no others.
+    let help = stdout(&packlight(&["--help"]));
+    let listed =
+        help.split("Commands:\n").nth(1).and_then(|rest| rest.split("\n\n").next()).expect("commands");
+    let command = |line: &str| line.strip_prefix("  ")?.split_whitespace().next().map(String::from);
+    let listed = listed.lines().filter(|line| !line.starts_with("   ")).filter_map(command);
+    let mut expected: Vec<String> = listed.filter(|name| name != "help").collect();
+    assert!(expected.len() > 10, "{help}");
+    expected.extend(["brdf-sheet", "submit-slurm"].map(String::from));
+    let mut pages: Vec<String> = expected.iter().map(|name| format!("packlight-{name}.1")).collect();
+    pages.push("packlight.1".into());
+    pages.sort();
+    let entries = fs::read_dir(&folder).expect("readable");
+    let mut written: Vec<String> =
+        entries.map(|entry| entry.expect("readable").file_name().to_string_lossy().into_owned()).collect();
+    written.sort();
+    assert_eq!(written, pages);
+    for page in &written {
+        let text = fs::read_to_string(folder.join(page)).expect("readable").replace('\\', "");
+        let names = text.split("packlight-").skip(1).filter_map(|rest| rest.split_once("(1)"));
+        for (name, _) in names.filter(|(name, _)| name.chars().all(|c| c.is_ascii_alphabetic() || c == '-')) {
+            assert!(expected.iter().any(|known| known == name), "{page} refers to {name}");
+        }
+        assert!(!text.contains("f32x8"), "{page} tells this machine's lanes");
+    }
 }

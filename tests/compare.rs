@@ -29,7 +29,7 @@ fn pattern(test: bool, curve: impl Fn(f32) -> f32) -> Picture {
     let plane = |c: u32| (0..WIDTH * HEIGHT).map(|i| curve(value(i % WIDTH, i / WIDTH, c))).collect();
     let channels = ["R", "G", "B"].into_iter().zip(0..);
     let channels = channels.map(|(name, c)| Channel { name: name.into(), samples: plane(c) });
-    Picture { width: WIDTH, height: HEIGHT, channels: channels.collect() }
+    Picture { width: WIDTH, height: HEIGHT, channels: channels.collect(), place: None }
 }
 
 fn light(x: f32) -> f32 {

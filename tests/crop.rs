@@ -31,6 +31,7 @@ fn read(file: &str) -> Picture {
         width: layer.size.width() as u32,
         height: layer.size.height() as u32,
         channels: layer.channel_data.list.iter().map(channel).collect(),
+        place: None,
     }
 }
 

@@ -12,7 +12,7 @@ use std::{env, fs, path::Path};
 use packlight::{
     compare::difference,
     denoise::Denoiser,
-    picture::{Encoding, Picture, decode, exr_attributes},
+    picture::{Channel, Encoding, Picture, decode, exr_attributes},
 };
 use program::{command, fails, folder, packlight, path, stderr, stdout};
 
@@ -99,6 +99,33 @@ fn the_raw_picture_stays_and_the_other_is_nearer_to_the_truth() {
     let (noisy, clean) = (error("out.exr"), error("out.denoised.exr"));
     assert!(clean < 0.2 * noisy, "relMSE {clean}, and {noisy} before");
     assert_eq!(names(&file("out.denoised.exr")), ["B", "G", "R"]);
+}
+
+/// What the camera sees besides is a hint: with other layers other pictures come out.
+#[test]
+fn albedo_and_normals_are_looked_at() {
+    if !has_library() {
+        return;
+    }
+    let (width, height) = (64, 64);
+    let plane = |name: &str, value: &dyn Fn(u32, u32) -> f32| Channel {
+        name: name.into(),
+        samples: (0..width * height).map(|i| value(i % width, i / width)).collect(),
+    };
+    let grain =
+        |x: u32, y: u32| (x * 7919 + y * 104_729).wrapping_mul(2_654_435_761) as f32 / u32::MAX as f32;
+    let stripes = |x: u32, _: u32| if x / 8 % 2 == 0 { 0.2 } else { 0.8 };
+    let mut channels: Vec<Channel> = ["R", "G", "B"].map(|name| plane(name, &grain)).into();
+    channels.extend(["flat.R", "flat.G", "flat.B"].map(|name| plane(name, &|_, _| 0.5)));
+    channels.extend(["stripes.R", "stripes.G", "stripes.B"].map(|name| plane(name, &stripes)));
+    let picture = Picture { width, height, channels, place: None };
+    let denoiser = Denoiser::load(env::var_os("OIDN_LIB").as_deref(), 1).expect("it was there");
+    let (flat, stripes) = (["flat.R", "flat.G", "flat.B"], ["stripes.R", "stripes.G", "stripes.B"]);
+    let red = |albedo, normal| {
+        denoiser.denoise(&picture, albedo, normal).expect("denoised").plane("R").expect("red").to_vec()
+    };
+    let usual = red(flat, flat);
+    assert!(usual != red(stripes, flat) && usual != red(flat, stripes));
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! Our EXR files as others read them: `exrheader` of OpenEXR and `oiiotool` of OpenImageIO, where they are installed.
+//! Our EXR files as others read them: `exrheader` of OpenEXR, `oiiotool` of OpenImageIO and Blender, where they are
+//! installed.
 
 #![allow(missing_docs)]
 
@@ -103,6 +104,61 @@ fn oiiotool_reads_the_numbers_that_were_written() {
         let told = run("oiiotool", &[&reference, &out, "--diff"]).expect("it was there");
         assert!(told.contains("PASS"), "{told}");
     }
+}
+
+/// A part of a picture lies where it belongs: its data window in the display window that is the whole. So do
+/// checkpoints and shards of it, and what is put together from shards.
+#[test]
+fn a_crop_has_its_place_in_the_whole() {
+    let folder = folder("exr_readers/crop");
+    let file = |name: &str| path(&folder, name);
+    let small = ["--width", "90", "--height", "70", "--spp", "2", "--quiet", "--crop", "11,60,3,70"];
+    let render = |out: &str, more: &[&str]| {
+        let output = packlight(&[&["render", "scenes/cornell.xml", "-o", out], &small[..], more].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    };
+    let files = ["crop", "kept", "1", "2", "merged"].map(|name| file(&format!("{name}.exr")));
+    let [crop, kept, first, second, merged] = &files;
+    render(crop, &["--checkpoint", kept]);
+    render(first, &["--shard", "1/2"]);
+    render(second, &["--shard", "2/2"]);
+    let output = packlight(&["merge", first, second, "-o", merged, "-q"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    for file in &files {
+        let Some(header) = run("exrheader", &[file]) else { return };
+        for line in
+            ["dataWindow (type box2i): (11 3) - (59 69)", "displayWindow (type box2i): (0 0) - (89 69)"]
+        {
+            assert!(header.contains(line), "{line} is not in\n{header}");
+        }
+    }
+    let whole = file("whole.exr");
+    let output =
+        packlight(&[&["render", "scenes/cornell.xml", "-o", &whole], &small[..small.len() - 2]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    // Cut out of the whole by somebody else, it is the same picture.
+    if let Some(told) = run("oiiotool", &[&whole, "--crop", "49x67+11+3", crop, "--diff"]) {
+        assert!(told.contains("PASS"), "{told}");
+    }
+}
+
+/// Passes as Blender names them: what is before the point, and the colours outside of layers are `Combined`.
+#[test]
+fn blender_finds_every_layer() {
+    let out = path(&folder("exr_readers/blender"), "a.exr");
+    render(&out, &[]);
+    let script = format!(
+        "import bpy\nimage = bpy.data.images.load({out:?})\nscene = bpy.context.scene\nscene.use_nodes = True\n\
+         node = scene.node_tree.nodes.new('CompositorNodeImage')\nnode.image = image\n\
+         print(image.type, ' '.join(f'{{out.name}}:{{out.type}}' for out in node.outputs if out.enabled))"
+    );
+    let Some(told) = run("blender", &["-b", "-noaudio", "--python-exit-code", "1", "--python-expr", &script])
+    else {
+        return;
+    };
+    let layers = "MULTILAYER Combined:RGBA Alpha:VALUE albedo:RGBA depth:VALUE normal:RGBA position:RGBA \
+                  primitive_id:VALUE uv:RGBA";
+    assert!(told.contains(layers), "{layers} is not in\n{told}");
 }
 
 #[test]

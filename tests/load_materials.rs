@@ -131,7 +131,7 @@ fn every_slot_takes_a_number_a_checkerboard_or_a_picture() {
 fn image(folder: &Path, name: &str) {
     let channel = |name: &str| packlight::picture::Channel { name: name.into(), samples: vec![0.0, 1.0] };
     let channels = ["R", "G", "B"].map(channel).into();
-    let picture = packlight::picture::Picture { width: 2, height: 1, channels };
+    let picture = packlight::picture::Picture { width: 2, height: 1, channels, place: None };
     packlight::picture::save(&picture, &folder.join(name), packlight::picture::Preview::default())
         .expect("the folder for temporary files can be written");
 }
@@ -312,7 +312,7 @@ fn a_texture_of_one_texel_is_the_right_picture() {
     let folder = folder();
     let channel = |name: &str| packlight::picture::Channel { name: name.into(), samples: vec![0.5] };
     let channels = ["R", "G", "B"].map(channel).into();
-    let picture = packlight::picture::Picture { width: 1, height: 1, channels };
+    let picture = packlight::picture::Picture { width: 1, height: 1, channels, place: None };
     packlight::picture::save(&picture, &folder.path().join("a.exr"), packlight::picture::Preview::default())
         .expect("it can be written");
     let bitmap = "type='bitmap'><string name='filename' value='a.exr'/></texture>";

@@ -273,7 +273,7 @@ fn environments_are_pictures_that_may_be_turned() {
     let plane = |name: &str, value: f32| Channel { name: name.into(), samples: vec![value, 1.0, 2.0, 3.0] };
     let write = |name: &str, red: f32| {
         let channels = vec![plane("R", red), plane("G", 0.0), plane("B", 0.0)];
-        let picture = Picture { width: 2, height: 2, channels };
+        let picture = Picture { width: 2, height: 2, channels, place: None };
         save(&picture, &folder.path().join(name), Preview::default()).unwrap();
     };
     write("sky.exr", 0.5);

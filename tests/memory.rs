@@ -84,6 +84,8 @@ fn what_is_expected_is_close_to_what_is_taken() {
     let film = vec!["--width", "1000", "--height", "1000", "--spp", "1"];
     let sums = vec!["--width", "500", "--height", "500", "--spp", "16"];
     let layers = [&film[..], &["--integrator", "ao", "--aov", "albedo,normal,depth,uv"]].concat();
+    let checkpoint = path(&folder("memory/kept"), "kept.exr");
+    let kept = [&film[..], &["--checkpoint", &checkpoint]].concat();
     let threads = vec!["--width", "400", "--height", "400", "--spp", "1", "--threads", "16"];
     let fast = [&small[..], &["--quality", "fast"]].concat();
     let mut complaints = Vec::new();
@@ -92,6 +94,7 @@ fn what_is_expected_is_close_to_what_is_taken() {
         ("scenes/cornell.xml", film),
         ("scenes/cornell.xml", sums),
         ("scenes/cornell.xml", layers),
+        ("scenes/cornell.xml", kept),
         ("scenes/whitted.xml", threads),
         ("scenes/materials.xml", mesh.clone()),
         ("scenes/sky.xml", mesh.clone()),

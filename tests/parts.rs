@@ -13,6 +13,11 @@ use std::{
     time::{Duration, Instant},
 };
 
+use packlight::{
+    compile::compile,
+    load::{LoadOptions, load},
+    render::{Frame, Plan},
+};
 use program::{command, folder, packlight, path, stderr, stdout};
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/cornell.xml");
@@ -172,6 +177,23 @@ fn a_killed_render_is_resumed_to_the_bit() {
     same(&out, &whole);
 }
 
+/// Sums are kept in blocks of sixteen samples: wherever in a block a render was cut, it goes on to the same bits.
+#[test]
+fn a_render_is_cut_after_every_sample_of_a_block() {
+    let folder = folder("parts/cuts");
+    let file = |name: &str| path(&folder, name);
+    let (whole, out, kept) = (file("whole.exr"), file("out.exr"), file("kept.exr"));
+    let render = |out: &str, spp: &str, more: &[&str]| {
+        succeeds(&[&["render", SCENE, "-o", out, "--width", "9", "--spp", spp, "--quiet"], more].concat());
+    };
+    const LAST: u32 = 35;
+    render(&whole, &LAST.to_string(), &[]);
+    for samples in 1..=LAST {
+        render(&out, &samples.to_string(), &["--checkpoint", &kept, "--resume", &kept]);
+    }
+    same(&out, &whole);
+}
+
 #[test]
 fn a_checkpoint_of_another_render_is_refused_with_the_difference() {
     let folder = folder("parts/other-render");
@@ -181,8 +203,11 @@ fn a_checkpoint_of_another_render_is_refused_with_the_difference() {
         fails(&render(&out, &[&["--resume", &kept], more].concat()), 1, message);
     };
     resumed(&["--seed", "3"], "the seed is 0 there and 3 here");
-    resumed(&["--integrator", "direct"], "the integrator is Path");
-    resumed(&["--height", "50"], "the film is");
+    resumed(
+        &["--integrator", "direct"],
+        "the integrator is path, max_depth 6, rr_depth 5 there and direct here",
+    );
+    resumed(&["--height", "50"], "the film is 70 x 70, box, rgb there and 70 x 50, box, rgb here");
     resumed(&["--aov", "depth"], "the list of channels is R, G, B there and R, G, B, depth.Z here");
     resumed(&["--shard", "1/2"], "the shard is 1/1 there and 1/2 here");
     let other = path(&folder, "other.xml");
@@ -223,6 +248,16 @@ fn a_finished_render_goes_on_to_more_samples() {
     );
     assert_eq!(goes_on("--quiet"), "");
     assert!(goes_on("--json").starts_with('{'));
+}
+
+#[test]
+fn what_was_spent_before_counts() {
+    let loaded = load(Path::new(SCENE), &LoadOptions::default()).expect("it loads");
+    let scene = compile(&loaded.description).expect("it compiles");
+    let mut part = Frame::new(&scene, Plan::default()).part("", &[]);
+    part.time = Duration::from_secs(1000);
+    let frame = Frame::resume(&scene, Plan::default(), &[], part).expect("it is of the same render");
+    assert!(frame.develop().statistics.time >= Duration::from_secs(1000));
 }
 
 /// Long enough to be stopped by hand.

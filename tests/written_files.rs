@@ -112,10 +112,15 @@ fn files_say_what_they_show_and_no_more_than_asked() {
         "{}",
         said("packlight.rays")
     );
-    assert!(said("packlight.integrator").starts_with("Direct"), "{}", said("packlight.integrator"));
+    assert_eq!(said("packlight.integrator"), "direct");
     assert!(said("software").starts_with("packlight "), "{}", said("software"));
     let all = header(&["--metadata", "all"]);
     assert!(all.iter().any(|(name, _)| name == "packlight.seconds"));
+    let version = packlight(&["--version"]);
+    let lanes = all.iter().find(|(name, _)| name == "packlight.lanes").expect("lanes are told");
+    assert!(!lanes.1.is_empty() && program::stdout(&version).contains(&lanes.1), "{lanes:?}");
+    let threads = header(&["--metadata", "all", "--threads", "3"]);
+    assert!(threads.contains(&("packlight.threads".into(), "3".into())), "{threads:?}");
     assert!(header(&["--metadata", "none"]).iter().all(|(name, _)| !name.starts_with("packlight.")));
 }
 
@@ -123,11 +128,11 @@ fn files_say_what_they_show_and_no_more_than_asked() {
 fn tone_curves_change_a_png_and_nothing_else() {
     let folder = folder("tonemap");
     let scene = triangle(&folder);
-    let shown = |tone: &str| {
+    let shown = |tone: &str, stops: &str| {
         let out = path(&folder, "a.png");
-        let arguments =
-            ["render", &scene, "-o", &out, "--width", "16", "--spp", "2", "--quiet", "--tonemap", tone];
-        assert_eq!(packlight(&arguments).status.code(), Some(0));
+        let arguments = ["render", &scene, "-o", &out, "--width", "16", "--spp", "2", "--quiet"];
+        let output = packlight(&[&arguments[..], &["--tonemap", tone, "--exposure", stops]].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         fs::read(&out).expect("it was written")
     };
     let light = path(&folder, "a.exr");
@@ -136,13 +141,16 @@ fn tone_curves_change_a_png_and_nothing_else() {
     let light = decode(light.as_ref(), Encoding::Raw).expect("readable");
     let curves =
         [("none", Tone::Clip), ("aces", Tone::Aces), ("agx", Tone::Agx), ("reinhard", Tone::Reinhard)];
+    let expected = |preview: Preview| {
+        encode_with(&light, Format::Png, &Style { preview, ..Style::default() }).expect("a picture")
+    };
     let pictures = curves.map(|(name, tone)| {
-        let style = Style { preview: Preview { tone, ..Preview::default() }, ..Style::default() };
-        let expected = encode_with(&light, Format::Png, &style).expect("a picture");
-        let shown = shown(name);
-        assert!(shown == expected, "{name}");
+        let shown = shown(name, "0");
+        assert!(shown == expected(Preview { tone, ..Preview::default() }), "{name}");
         shown
     });
+    let darker = shown("aces", "-1.5");
+    assert!(darker == expected(Preview { tone: Tone::Aces, exposure: -1.5 }) && darker != pictures[1]);
     for (i, one) in pictures.iter().enumerate() {
         assert!(pictures[..i].iter().all(|other| other != one), "{i}");
     }

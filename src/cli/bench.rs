@@ -9,7 +9,7 @@ use clap::Args;
 use glam::DAffine3;
 
 use super::{
-    console,
+    MACHINE, console,
     failure::{Failure, warn, warn_of},
     quality::QualityOption,
     ray_file,
@@ -26,8 +26,17 @@ use crate::{
 };
 use row::{Build, Row};
 
+const EXAMPLES: &str = "\
+Examples:
+  packlight bench scenes/cornell.xml
+  packlight bench gen:terrain:1M --threads 1 --quality high
+  packlight bench scenes/cornell.xml --save-rays rays --json
+  packlight bench --mesh bunny.obj --rays rays/diffuse.rays
+  packlight bench scenes/whitted.xml --whitted";
+
 /// Arguments of `bench`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(super) struct Arguments {
     /// Scene or bare mesh, as for `render`; without --rays its own camera, shadow, ambient occlusion
     /// and bounce rays are traced
@@ -60,7 +69,7 @@ pub(super) struct Arguments {
     #[arg(long, requires = "scene", conflicts_with_all = ["rays", "save_rays", "mesh", "way"])]
     whitted: bool,
 
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = MACHINE)]
     threads: ThreadsOption,
 
     /// Timed runs after a warm-up; the best counts
@@ -68,10 +77,10 @@ pub(super) struct Arguments {
     repeat: u32,
 
     /// How the rays go through the tree; the answers stay the same to the bit
-    #[arg(long, value_name = "WAY", default_value = "chosen")]
+    #[arg(long, value_name = "WAY", help_heading = MACHINE, default_value = "chosen")]
     way: WayName,
 
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = MACHINE)]
     quality: QualityOption,
 
     /// One JSON object a class on stdout, a line each, without the single-ray path

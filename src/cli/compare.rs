@@ -16,8 +16,14 @@ use crate::{
     picture::{Encoding, Picture, Preview, decode, save},
 };
 
+const EXAMPLES: &str = "\
+Examples:
+  packlight compare reference.exr test.exr -o difference.png
+  packlight compare reference.exr test.exr --max-flip 0.05 --json";
+
 /// Arguments of `compare`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(super) struct Arguments {
     /// What is right
     #[arg(value_name = "REFERENCE")]

@@ -3,6 +3,7 @@
 use std::io::{self, ErrorKind, Write, stdout};
 
 use serde::Serialize;
+use terminal_size::{Width, terminal_size_of};
 
 use super::failure::Failure;
 
@@ -10,6 +11,36 @@ use super::failure::Failure;
 pub(super) fn print(text: &str) -> Result<(), Failure> {
     let mut out = stdout().lock();
     forgive(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+}
+
+/// Writes to stdout, on a terminal with lines no longer than it is wide: what is left of one goes on below the
+/// column `indent`. Elsewhere a line stays a line, to be searched for.
+pub(super) fn print_folded(text: &str, indent: usize) -> Result<(), Failure> {
+    match terminal_size_of(stdout()) {
+        Some((Width(columns), _)) => print(&folded(text, indent, columns.into())),
+        None => print(text),
+    }
+}
+
+/// Lines broken at blanks. A word is never broken.
+fn folded(text: &str, indent: usize, width: usize) -> String {
+    let mut out = String::new();
+    for line in text.lines() {
+        let mut column = 0;
+        for word in line.split_inclusive(' ') {
+            let length = word.trim_end().chars().count();
+            if column + length > width && column > indent {
+                out.truncate(out.trim_end().len());
+                out += "\n";
+                out += &" ".repeat(indent);
+                column = indent;
+            }
+            out += word;
+            column += word.chars().count();
+        }
+        out += "\n";
+    }
+    out
 }
 
 /// One JSON object and a newline.
@@ -38,6 +69,14 @@ fn forgive(result: io::Result<()>) -> Result<(), Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_long_line_goes_on_below_its_column() {
+        let text = "  one two, three, four\n  short\n";
+        assert_eq!(folded(text, 6, 80), text);
+        assert_eq!(folded(text, 6, 16), "  one two,\n      three,\n      four\n  short\n");
+        assert_eq!(folded("abcdefgh ij\n", 2, 4), "abcdefgh\n  ij\n");
+    }
 
     #[test]
     fn only_a_broken_pipe_is_forgiven() {

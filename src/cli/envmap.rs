@@ -21,8 +21,13 @@ use crate::{
 /// Directions in which nine coefficients are compared with the whole integral.
 const NORMALS: u32 = 256;
 
+const EXAMPLES: &str = "\
+Examples:
+  packlight envmap sky.exr --sh -o sky.json";
+
 /// Arguments of `envmap`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(super) struct Arguments {
     /// The environment: .exr, .hdr or any other picture, poles at the first and the last row
     #[arg(value_name = "PICTURE")]

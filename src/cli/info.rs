@@ -24,8 +24,15 @@ use crate::{
     simd::cpu,
 };
 
+const EXAMPLES: &str = "\
+Examples:
+  packlight info scenes/cornell.xml
+  packlight info bunny.obj --quality high
+  packlight info scenes/cornell.xml -D spp=64 --json";
+
 /// Arguments of `info`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(super) struct Arguments {
     #[command(flatten)]
     source: Source,
@@ -49,8 +56,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let scene = arguments.source.path.display().to_string();
     let compiled = (compiled.summary(), compiled.tree_shape());
     let info = Info::new(scene, &description, compiled, &expected, load_time);
-    if arguments.json { console::print_json(&info) } else { console::print(&info.to_string()) }
+    if arguments.json { console::print_json(&info) } else { console::print_folded(&info.to_string(), VALUES) }
 }
+
+/// The column of a table's values.
+const VALUES: usize = 14;
 
 /// Field names are the keys of `--json`; units are in the names.
 #[derive(Clone, Debug, Serialize)]
@@ -205,8 +215,8 @@ impl fmt::Display for Info {
             (
                 "BVH",
                 format!(
-                    "{} nodes, {} deep, {}, {} quality",
-                    grouped(self.bvh_nodes),
+                    "{}, {} deep, {}, {} quality",
+                    counted(self.bvh_nodes, "node"),
                     self.bvh_depth,
                     quantity::memory(self.bvh_bytes),
                     self.quality

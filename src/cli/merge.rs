@@ -18,8 +18,14 @@ use crate::{
     render::part::{Merged, Part, merge},
 };
 
+const EXAMPLES: &str = "\
+Examples:
+  packlight merge part-*.exr -o whole.exr
+  packlight merge part-*.exr -o preview.png --partial --tonemap agx";
+
 /// Arguments of `merge`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(super) struct Arguments {
     /// What `render --shard` has written, all of it, in any order
     #[arg(value_name = "PART", required = true)]

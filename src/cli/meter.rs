@@ -8,7 +8,7 @@ use glam::{DVec3, Vec3};
 use serde::Serialize;
 
 use super::{
-    console,
+    MACHINE, console,
     failure::{Failure, warn_of},
     memory::MemoryOption,
     quality::QualityOption,
@@ -22,8 +22,14 @@ use crate::{
     render::{Conditions, Receiver, Settings, meter},
 };
 
+const EXAMPLES: &str = "\
+Examples:
+  packlight meter scenes/cornell.xml --at 0,0,0 --normal 0,1,0
+  packlight meter room.xml --samples 1000000 --seed 1 --json";
+
 /// Arguments of `meter`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(super) struct Arguments {
     #[command(flatten)]
     source: Source,
@@ -44,13 +50,13 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "N")]
     seed: Option<u32>,
 
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = MACHINE)]
     threads: ThreadsOption,
 
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = MACHINE)]
     quality: QualityOption,
 
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = MACHINE)]
     memory: MemoryOption,
 
     /// One JSON object on stdout

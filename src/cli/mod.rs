@@ -43,15 +43,17 @@ use crate::simd::cpu;
 static VERSION: LazyLock<String> =
     LazyLock::new(|| format!("{}, {}", env!("CARGO_PKG_VERSION"), cpu::compiled()));
 
+/// The heading of options that are the same for many commands.
+const MACHINE: &str = "Machine (never changes a bit of what comes out)";
+
 const AFTER_HELP: &str = "\
 Examples:
   packlight render scenes/cornell.xml -o cornell.exr
-  packlight render scenes/cornell.xml -o preview.png --spp 16 --width 400 --exposure 1
+  packlight render scenes/cornell.xml -o quick.png --spp 16 --width 400
   packlight render bunny.obj -o normals.exr --integrator aov
-  packlight render scenes/cornell.xml -o long.exr --spp 4096 --checkpoint long.part.exr
   packlight render scenes/cornell.xml -o part-3.exr --shard 3/16
   packlight merge part-*.exr -o whole.exr
-  packlight submit slurm scenes/cornell.xml -o out.exr --shards 16 --run
+  packlight submit slurm scenes/cornell.xml -o out.exr --shards 16
   packlight compare reference.exr test.exr -o difference.png
   packlight info scenes/cornell.xml --json
   packlight bench gen:terrain:1M --threads 1
@@ -59,14 +61,14 @@ Examples:
   packlight brdf roughconductor:alpha=0.3,material=Au -o lobe.svg
   packlight meter scenes/cornell.xml --at 0,0,0 --normal 0,1,0
   packlight envmap sky.exr --sh -o sky.json
-  packlight completions bash > ~/.local/share/bash-completion/completions/packlight
+  packlight completions zsh > ~/.zfunc/_packlight
 
 Exit codes:
   0  done
-  1  a file could not be read, understood or written, a scene does not fit --memory-limit, or a model or
-     scene failed its check
+  1  a file could not be read, understood or written, a scene does not fit
+     --memory-limit, or a model or scene failed its check
   2  the command line was not understood
-  3  this processor lacks instructions that the program was compiled to use
+  3  this processor lacks instructions that the program was compiled for
   4  stopped by a signal; what was there was written";
 
 /// Traces light in packets of eight rays
@@ -141,6 +143,46 @@ mod tests {
     #[test]
     fn the_arguments_do_not_contradict_each_other() {
         Cli::command().debug_assert();
+    }
+
+    /// A command and all that are below it.
+    fn below(command: &clap::Command) -> Vec<&clap::Command> {
+        let commands = command.get_subcommands().filter(|below| below.get_name() != "help");
+        std::iter::once(command).chain(commands.flat_map(below)).collect()
+    }
+
+    #[test]
+    fn every_command_has_examples_and_none_is_wider_than_a_terminal() {
+        let mut cli = Cli::command();
+        cli.build();
+        for command in below(&cli).into_iter().filter(|command| command.get_name() != "submit") {
+            let name = command.get_bin_name().unwrap_or("packlight");
+            let help = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+            let examples = help.split("Examples:\n").nth(1).unwrap_or_else(|| panic!("{name} has none"));
+            assert!(examples.contains(&format!("  {name} ")), "{name}: {help}");
+            let mut whole = command.clone().term_width(80);
+            for line in whole.render_long_help().to_string().lines().chain(help.lines()) {
+                // A usage is a line, whatever is in it.
+                assert!(line.chars().count() <= 80 || line.starts_with("Usage:"), "{name}: {line}");
+            }
+        }
+    }
+
+    /// What other programs call it is understood too.
+    #[test]
+    fn names_of_pbrt_and_mitsuba_are_understood() {
+        for words in [
+            "render a.xml --outfile b.exr --nthreads 2 --pixelbounds 0,1,0,1 --seed 3 --spp 4 --quiet",
+            "render a.xml -o b.exr -t 2 -D spp=4",
+            "bench a.xml -t 1",
+        ] {
+            let parsed = Cli::try_parse_from(format!("packlight {words}").split(' '));
+            assert!(
+                parsed.is_ok(),
+                "{words}: {}",
+                parsed.map_or_else(|error| error.to_string(), |_| String::new())
+            );
+        }
     }
 
     #[test]

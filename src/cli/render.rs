@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 use clap::{Args, CommandFactory, ValueEnum, error::ErrorKind, value_parser};
 
 use super::{
-    Cli, console, duration,
+    Cli, MACHINE, console, duration,
     failure::{Failure, warn_of},
     memory::{self, MemoryOption},
     metadata,
@@ -47,19 +47,18 @@ use save::Ended;
 use share::ShardOptions;
 
 const PICTURE: &str = "Picture";
-const MACHINE: &str = "Machine (never changes a bit of the picture)";
-
 const REPORT: &str = "Report";
 
 const EXAMPLES: &str = "\
 Examples:
-  packlight render scenes/cornell.xml -o cornell.exr --aov albedo,normal,depth
-  packlight render scenes/cornell.xml -o preview.png --time-limit 10s --tonemap agx --denoise
-  packlight render scenes/cornell.xml -o detail.exr --crop 200,312,96,180 --spp 1024
-  packlight render scenes/cornell.xml -o live.exr --display-server localhost:14158
-  packlight render scenes/cornell.xml -o clean.exr --spp 4096 --target-error 0.01
-  packlight render scenes/cornell.xml -o long.exr --checkpoint kept.exr --resume kept.exr
-  packlight render scenes/cornell.xml -o part-3.exr --shard 3/16";
+  packlight render cornell.xml -o cornell.exr --aov albedo,normal,depth
+  packlight render cornell.xml -o quick.png --time-limit 10s --tonemap agx
+  packlight render cornell.xml -o clean.exr --spp 4096 --target-error 0.01
+  packlight render cornell.xml -o small.png --width 400 --spp 64 --denoise
+  packlight render cornell.xml -o detail.exr --crop 200,312,96,180
+  packlight render cornell.xml -o live.exr --display-server localhost:14158
+  packlight render cornell.xml -o long.exr --checkpoint k.exr --resume k.exr
+  packlight render cornell.xml -o part-3.exr --shard 3/16";
 
 /// Arguments of `render`.
 #[derive(Clone, Debug, Args)]
@@ -69,7 +68,7 @@ pub(super) struct Arguments {
     source: Source,
 
     /// Picture to write: .exr (linear, all channels), .hdr (linear) or .png (8-bit sRGB)
-    #[arg(short, long, value_name = "OUT", value_parser = Output::parse, required_unless_present = "pixel")]
+    #[arg(short, long, visible_alias = "outfile", value_name = "OUT", value_parser = Output::parse, required_unless_present = "pixel")]
     output: Option<Output>,
 
     /// How light is transported, in place of what the scene says
@@ -92,7 +91,7 @@ pub(super) struct Arguments {
     ///
     /// In pixels of the whole picture, in place of the scene's own crop. Pixels are to the bit what they are in
     /// the whole; but tiles begin at the crop, so by --target-error others of them may be done.
-    #[arg(long, value_name = "x0,x1,y0,y1", help_heading = PICTURE, conflicts_with = "pixel", value_parser = crop::parse)]
+    #[arg(long, visible_alias = "pixelbounds", value_name = "x0,x1,y0,y1", help_heading = PICTURE, conflicts_with = "pixel", value_parser = crop::parse)]
     crop: Option<crop::Bounds>,
 
     /// Seed of every random decision

@@ -1,6 +1,6 @@
 //! `packlight completions SHELL` and `packlight man FOLDER`: what the command line says of itself.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Command, CommandFactory};
 use clap_complete::Shell;
@@ -8,8 +8,19 @@ use clap_complete::Shell;
 use super::{Cli, console, failure::Failure, output::check_writable};
 use crate::picture::write_whole;
 
+const SHELLS: &str = "\
+Examples:
+  source <(packlight completions bash)
+  packlight completions zsh > ~/.zfunc/_packlight
+  packlight completions fish > ~/.config/fish/completions/packlight.fish";
+
+const PAGES: &str = "\
+Examples:
+  packlight man ~/.local/share/man/man1";
+
 /// Arguments of `completions`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = SHELLS)]
 pub(super) struct Completions {
     /// Whose words are to be completed
     #[arg(value_name = "SHELL")]
@@ -18,6 +29,7 @@ pub(super) struct Completions {
 
 /// Arguments of `man`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = PAGES)]
 pub(super) struct Manual {
     /// Folder for one page a command: packlight.1, packlight-render.1 …
     #[arg(value_name = "FOLDER")]
@@ -33,21 +45,22 @@ pub(super) fn complete(arguments: &Completions) -> Result<(), Failure> {
 
 /// Writes pages for `man`.
 pub(super) fn manual(arguments: &Manual) -> Result<(), Failure> {
-    let mut program = Cli::command();
+    // `packlight help` has nothing to say that a page does not, and lanes are those of one machine.
+    let mut program = Cli::command().disable_help_subcommand(true).version(env!("CARGO_PKG_VERSION"));
     program.build();
-    write_page(arguments, &program, "packlight")?;
-    for command in program.get_subcommands().filter(|command| command.get_name() != "help") {
-        write_page(arguments, command, &format!("packlight-{}", command.get_name()))?;
-    }
-    Ok(())
+    write_pages(&arguments.folder, &program, "packlight")
 }
 
-fn write_page(arguments: &Manual, command: &Command, name: &str) -> Result<(), Failure> {
-    let path = arguments.folder.join(format!("{name}.1"));
+/// The page of a command, and those of the commands below it.
+fn write_pages(folder: &Path, command: &Command, name: &str) -> Result<(), Failure> {
+    let path = folder.join(format!("{name}.1"));
     check_writable(&path)?;
     let mut page = Vec::new();
     let rendered = clap_mangen::Man::new(command.clone()).render(&mut page);
     rendered
         .and_then(|()| write_whole(&path, &page))
-        .map_err(|error| Failure::Sentence(format!("{}: {error}", path.display())))
+        .map_err(|error| Failure::Sentence(format!("{}: {error}", path.display())))?;
+    command
+        .get_subcommands()
+        .try_for_each(|below| write_pages(folder, below, &format!("{name}-{}", below.get_name())))
 }

@@ -58,7 +58,8 @@ pub(super) fn warn_of_degenerate(origins: &Origins, scene: &Scene) {
             Some(group) => origins.groups.get(group.0 as usize)?,
         };
         let triangles = counted(one.triangles, "triangle");
-        let message = format!("{triangles} without area can't be hit and are left out");
+        let are = if one.triangles == 1 { "is" } else { "are" };
+        let message = format!("{triangles} without area can't be hit and {are} left out");
         Some(shapes.get(one.shape as usize)?.warning(message).label("of this shape"))
     });
     warn(&warnings.collect::<Vec<_>>());

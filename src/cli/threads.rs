@@ -9,7 +9,7 @@ use super::failure::Failure;
 #[derive(Clone, Copy, Debug, Args)]
 pub(super) struct ThreadsOption {
     /// Threads; one a core if not given
-    #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
+    #[arg(short, long, visible_alias = "nthreads", value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
     threads: Option<usize>,
 }
 

@@ -9,7 +9,8 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::{
-    console, failure::Failure, quality::QualityOption, ray_file, source::Source, threads::ThreadsOption,
+    MACHINE, console, failure::Failure, quality::QualityOption, ray_file, source::Source,
+    threads::ThreadsOption,
 };
 use crate::{
     compile::{Scene, compile_with},
@@ -29,8 +30,16 @@ use findings::{ClassRow, Findings, LeakRow, SelfHitRow};
 /// Tests of a ray against a primitive that brute force may take for a class of rays.
 const BRUTE_TESTS: u64 = 1 << 28;
 
+const EXAMPLES: &str = "\
+Examples:
+  packlight verify scenes/cornell.xml
+  packlight verify bunny.obj --most 10000 --into faults
+  packlight verify bunny.obj --against embree
+  packlight verify bunny.obj --rays faults/primary.rays --expect hit";
+
 /// Arguments of `verify`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(super) struct Arguments {
     #[command(flatten)]
     source: Source,
@@ -55,10 +64,10 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "WHOSE")]
     against: Option<Other>,
 
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = MACHINE)]
     threads: ThreadsOption,
 
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = MACHINE)]
     quality: QualityOption,
 
     /// One JSON object on stdout

@@ -24,7 +24,8 @@ pub fn false_colours(width: u32, values: &[f32]) -> Picture {
     let plane = |c: usize| pixels.iter().map(|pixel| pixel[c]).collect();
     let channels = ["R", "G", "B"].into_iter().enumerate();
     let channels = channels.map(|(c, name)| Channel { name: name.into(), samples: plane(c) });
-    Picture { width, height: (values.len() / width.max(1) as usize) as u32, channels: channels.collect() }
+    let height = (values.len() / width.max(1) as usize) as u32;
+    Picture { width, height, channels: channels.collect(), place: None }
 }
 
 /// Light of an encoded value, by the power that is nearest to the curve of sRGB.

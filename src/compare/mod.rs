@@ -30,9 +30,9 @@ pub struct Difference {
     pub mean_ratio: [f64; 3],
     /// Mean of (t − r)² / (r² + 0.01) over pixels and colours.
     pub rel_mse: f64,
-    /// Root of the mean of (t − r)².
+    /// Root of the mean of (t − r)², in the numbers of the pictures: linear light.
     pub rmse: f64,
-    /// The largest |t − r|.
+    /// The largest |t − r|, likewise.
     pub largest: f64,
     /// Numbers that differ in any bit, of all.
     pub different: u64,
@@ -100,7 +100,7 @@ pub(crate) mod tests {
         let samples = |c: usize| (0..(width * height) as usize).map(|i| value(i, c)).collect();
         let channels = ["R", "G", "B"].iter().enumerate();
         let channels = channels.map(|(c, &name)| Channel { name: name.into(), samples: samples(c) });
-        Picture { width, height, channels: channels.collect() }
+        Picture { width, height, channels: channels.collect(), place: None }
     }
 
     #[test]
@@ -127,7 +127,7 @@ pub(crate) mod tests {
         let (a, b) = (picture(2, 1, |_, _| 1.0), picture(1, 2, |_, _| 1.0));
         assert_eq!(difference(&a, &b), Err(CompareError::Sizes(2, 1, 1, 2)));
         assert_eq!(
-            difference(&a, &Picture { width: 2, height: 1, channels: Vec::new() }),
+            difference(&a, &Picture { width: 2, height: 1, ..Picture::default() }),
             Err(CompareError::NoColours)
         );
     }

@@ -95,11 +95,11 @@ pub(super) struct Surfaces {
 pub struct Surface<R: Real> {
     /// World space.
     pub position: Vector3<R>,
-    /// Size of the surface around it, for [`offset_origin`](crate::geometry::offset_origin).
+    /// Size of the surface around it in world space, for [`offset_origin`](crate::geometry::offset_origin).
     pub extent: Vector3<R>,
-    /// Geometric normal as the surface stores it, unit length.
+    /// Geometric normal as the surface stores it, in world space, unit length.
     pub n_g: Vector3<R>,
-    /// The shading normal, with tangents: the first along ∂p/∂u where that was asked for, else any.
+    /// The shading normal in world space, with tangents: the first along ∂p/∂u where that was asked for, else any.
     pub frame: Frame<R>,
     /// ∂p/∂u and ∂p/∂v in world space where they were asked for, else zero.
     pub partials: [Vector3<R>; 2],

@@ -147,7 +147,7 @@ mod tests {
     fn pixels_have_their_channels_together_and_missing_ones_are_named() {
         let channel = |name: &str, samples: [f32; 2]| Channel { name: name.into(), samples: samples.into() };
         let channels = vec![channel("a", [1.0, 4.0]), channel("b", [2.0, 5.0]), channel("c", [3.0, 6.0])];
-        let picture = Picture { width: 2, height: 1, channels };
+        let picture = Picture { width: 2, height: 1, channels, place: None };
         assert_eq!(interleaved(&picture, ["a", "b", "c"]), Ok(vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]));
         assert_eq!(interleaved(&picture, ["a", "d", "c"]), Err(DenoiseError::NoChannel("d".into())));
     }

@@ -26,7 +26,9 @@ impl Film {
     pub fn new(width: u32, height: u32, channels: &[String]) -> Self {
         let samples = || vec![0.0; width as usize * height as usize];
         let channel = |name: &String| Channel { name: name.clone(), samples: samples() };
-        Self { picture: Picture { width, height, channels: channels.iter().map(channel).collect() } }
+        Self {
+            picture: Picture { width, height, channels: channels.iter().map(channel).collect(), place: None },
+        }
     }
 
     /// Puts the means of a tile in its place.

@@ -23,9 +23,9 @@ pub struct AreaLight {
     pub shape: Emitting,
     /// +1 if the shape's own normal is the side that emits, −1 if it is the other.
     pub side: f32,
-    /// Size of the surface around any of its points, for [`offset_origin`].
+    /// Size of the surface around any of its points, in world space, for [`offset_origin`].
     pub extent: Vec3,
-    /// Around all that shines, as rays meet it.
+    /// Around all that shines, as rays meet it; world space.
     pub bounds: Aabb,
 }
 

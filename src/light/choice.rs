@@ -26,7 +26,7 @@ pub struct Glimpse {
     pub intensity: f32,
     /// From here; world space.
     pub middle: Vec3,
-    /// Of a ball that holds the light.
+    /// Of a ball that holds the light; world units.
     pub radius: f32,
 }
 

@@ -50,7 +50,7 @@ pub enum Light {
     Spot(Spot),
     /// Parallel light.
     Directional {
-        /// Towards the light; unit length.
+        /// Towards the light, in world space; unit length.
         towards: Vec3,
         /// W/m² on a surface at right angles.
         irradiance: Vec3,
@@ -93,7 +93,7 @@ pub enum Reach {
 pub struct LightSample<R: Real> {
     /// Towards the light; unit length.
     pub wi: Vector3<R>,
-    /// The point on the light, moved off its surface towards the receiver, if that is where it is.
+    /// The point on the light in world space, moved off its surface towards the receiver, if that is where it is.
     pub target: Vector3<R>,
     /// Where the light is.
     pub reach: Reach,

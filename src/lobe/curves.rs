@@ -43,7 +43,7 @@ pub struct Spike {
 pub struct Albedo {
     /// Degrees from the normal.
     pub angle: f32,
-    /// ∫ f cos θ_i dω over the side of the viewer.
+    /// ∫ f cos θ_i dω over the side of the viewer, a share of what arrives, in [0, 1].
     pub reflected: DVec3,
     /// The same from the other side, as power: radiance over the square of the index.
     pub transmitted: DVec3,

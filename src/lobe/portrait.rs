@@ -107,7 +107,12 @@ fn dial() -> Picture {
     };
     let samples: Vec<f32> = (0..width * height).map(value).collect();
     let channel = |name: &str| Channel { name: name.into(), samples: samples.clone() };
-    Picture { width: width as u32, height: height as u32, channels: ["R", "G", "B"].map(channel).into() }
+    Picture {
+        width: width as u32,
+        height: height as u32,
+        channels: ["R", "G", "B"].map(channel).into(),
+        place: None,
+    }
 }
 
 /// A scene in the making.

@@ -97,5 +97,6 @@ fn hues(values: &[Vec3]) -> Picture {
         width: COLUMNS as u32,
         height: ROWS as u32,
         channels: channels.map(|(k, name)| Channel { name: name.into(), samples: plane(k) }).collect(),
+        place: None,
     }
 }

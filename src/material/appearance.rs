@@ -19,7 +19,7 @@ use crate::texture::{Coordinates, TextureTable};
 /// Points of a surface, in their shading frames.
 #[derive(Clone, Copy, Debug)]
 pub struct Point<R: Real> {
-    /// Towards the viewer.
+    /// Towards the viewer, in the shading frame; unit length.
     pub wo: Vector3<R>,
     /// Where its textures are looked up.
     pub uv: Coordinates<R>,

@@ -10,7 +10,7 @@ use crate::simd::{Mask, Real, Vector3, vector3};
 pub struct Conductor<R> {
     /// Real part of the index of refraction.
     pub eta: Vector3<R>,
-    /// Imaginary part.
+    /// Imaginary part of the index of refraction.
     pub k: Vector3<R>,
     /// Factor on what is reflected.
     pub reflectance: Vector3<R>,

@@ -14,7 +14,7 @@ use crate::simd::{Mask, Real, Vector3};
 /// f = ρ/π, black from behind.
 #[derive(Clone, Copy, Debug)]
 pub struct Lambert<R> {
-    /// ρ.
+    /// ρ, the share of light that is reflected, in [0, 1].
     pub reflectance: Vector3<R>,
 }
 

@@ -18,7 +18,7 @@ pub struct RoughConductor<R> {
     pub surface: Microfacet<R>,
     /// Real part of the index of refraction.
     pub eta: Vector3<R>,
-    /// Imaginary part.
+    /// Imaginary part of the index of refraction.
     pub k: Vector3<R>,
     /// Factor on what is reflected.
     pub reflectance: Vector3<R>,

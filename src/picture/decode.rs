@@ -79,6 +79,7 @@ fn to_planes(image: DynamicImage, encoding: Encoding) -> Picture {
         width,
         height,
         channels: channels.map(|(name, samples)| Channel { name: name.into(), samples }).collect(),
+        place: None,
     }
 }
 

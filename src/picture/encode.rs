@@ -203,7 +203,7 @@ mod tests {
         let plane = |k: usize| (0..pixels).map(|i| value(3 * i + k)).collect();
         let channels = ["R", "G", "B"].into_iter().enumerate();
         let channels = channels.map(|(k, name)| Channel { name: name.into(), samples: plane(k) });
-        Picture { width, height, channels: channels.collect() }
+        Picture { width, height, channels: channels.collect(), place: None }
     }
 
     fn names(folder: &Path) -> Vec<String> {

@@ -34,6 +34,21 @@ pub struct Picture {
     pub height: u32,
     /// `R G B` for colours, in that order; any names for AOVs.
     pub channels: Vec<Channel>,
+    /// Where it is in a larger one, if it is a part of one. Only an EXR says so.
+    pub place: Option<Place>,
+}
+
+/// Where a picture is in the whole that it is a part of. In pixels of the whole, row 0 is the top.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The column in which it begins.
+    pub x: u32,
+    /// The row in which it begins.
+    pub y: u32,
+    /// Columns of the whole.
+    pub width: u32,
+    /// Rows of the whole.
+    pub height: u32,
 }
 
 impl Picture {
@@ -48,7 +63,7 @@ impl Picture {
 pub struct Channel {
     /// As EXR files name it: `R`, `nn.X`.
     pub name: String,
-    /// Row-major, `width` × `height`.
+    /// Row-major, `width` × `height`. Of colours, linear sRGB; of others, what the name says.
     pub samples: Vec<f32>,
 }
 

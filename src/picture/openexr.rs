@@ -1,13 +1,18 @@
 //! OpenEXR, both ways: all channels out, `R G B` in.
+//!
+//! Colours are `R G B A`, or `Y`. What is in a layer is called `layer.component`, the component being one
+//! letter: so OpenEXR divides names at their points \[KBS13\], Nuke makes channels of them \[Fou16\], and Blender
+//! passes \[Ble22\]. A part of a picture keeps its pixels' coordinates: its data window lies where it belongs in
+//! the display window, which is the whole \[KBS13\].
 
 use std::io::Cursor;
 
 use exr::prelude::{
-    AnyChannel, AnyChannels, Blocks, Compression, Encoding, Error, FlatSamples, Image, Layer,
+    AnyChannel, AnyChannels, Blocks, Compression, Encoding, Error, FlatSamples, Image, IntegerBounds, Layer,
     LayerAttributes, LineOrder, MetaData, ReadChannels, ReadLayers, Text, Vec2, WritableImage, f16, read,
 };
 
-use super::{Channel, Picture, exr_header, limits};
+use super::{Channel, Picture, Place, exr_header, limits};
 
 /// The first bytes of every OpenEXR file.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
@@ -69,11 +74,20 @@ pub(super) fn encode(picture: &Picture, style: &ExrStyle) -> Result<Vec<u8>, Str
             true => FlatSamples::F16(channel.samples.iter().map(|&x| f16::from_f32(x)).collect()),
             false => FlatSamples::F32(channel.samples.clone()),
         };
-        channels.push(AnyChannel::new(name, samples));
+        // A hint for compressions that lose something: what is no colour is not seen by an eye.
+        channels.push(AnyChannel {
+            quantize_linearly: !is_colour(&channel.name),
+            ..AnyChannel::new(name, samples)
+        });
     }
+    let Picture { width, height, place, .. } = *picture;
+    let place = place.unwrap_or(Place { x: 0, y: 0, width, height });
     let layer = Layer::new(
-        Vec2(picture.width as usize, picture.height as usize),
-        LayerAttributes::default(),
+        Vec2(width as usize, height as usize),
+        LayerAttributes {
+            layer_position: Vec2(place.x as i32, place.y as i32),
+            ..LayerAttributes::default()
+        },
         Encoding {
             compression: style.compression.into(),
             blocks: Blocks::ScanLines,
@@ -81,8 +95,13 @@ pub(super) fn encode(picture: &Picture, style: &ExrStyle) -> Result<Vec<u8>, Str
         },
         AnyChannels::sort(channels.into()),
     );
+    let mut image = Image::from_layer(layer);
+    let whole = Vec2(place.width as usize, place.height as usize);
+    image.attributes.display_window = IntegerBounds::from_dimensions(whole);
     let mut file = Cursor::new(Vec::new());
-    Image::from_layer(layer).write().non_parallel().to_buffered(&mut file).map_err(|e| e.to_string())?;
+    image.write().non_parallel().to_buffered(&mut file).map_err(|e| e.to_string())?;
+    // What follows copies the file; its numbers need not be there a third time.
+    drop(image);
     exr_header::insert(&file.into_inner(), &style.attributes)
 }
 
@@ -92,7 +111,7 @@ fn is_colour(channel: &str) -> bool {
     matches!(part, "R" | "G" | "B" | "A") || (layer.is_empty() && part == "Y")
 }
 
-/// `R G B`, or `Y` three times, of the first layer that has them.
+/// `R G B`, or `Y` three times, of the first layer that has them. Where they are in a larger picture is not read.
 pub(super) fn decode(bytes: &[u8]) -> Result<Picture, String> {
     check_header(bytes)?;
     let image = read()
@@ -119,6 +138,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Picture, String> {
                 width: layer.size.width() as u32,
                 height: layer.size.height() as u32,
                 channels: channels.map(|(name, samples)| Channel { name: name.into(), samples }).collect(),
+                place: None,
             });
         }
     }
@@ -173,7 +193,7 @@ mod tests {
         let samples = |k: usize| (0..35).map(|i| (i * i) as f32 * 0.37 - k as f32).collect();
         let channels =
             names.iter().enumerate().map(|(k, &name)| Channel { name: name.into(), samples: samples(k) });
-        Picture { width: 7, height: 5, channels: channels.collect() }
+        Picture { width: 7, height: 5, channels: channels.collect(), place: None }
     }
 
     #[test]

@@ -27,7 +27,7 @@ use super::{
 use crate::{
     compile::Scene,
     film::{self, Film, Tile, TileFilm, spread::Spread},
-    picture::Picture,
+    picture::{Picture, Place},
     scene::Crop,
 };
 
@@ -84,6 +84,8 @@ pub struct Frame {
     /// Samples a pixel that are asked for.
     samples: u32,
     window: Crop,
+    /// Where the window is in the film, if it is not all of it.
+    place: Option<Place>,
     channels: Vec<String>,
     cells: Vec<Cell>,
     /// What was spent on it before it was resumed.
@@ -125,7 +127,7 @@ pub(super) fn tiles(window: Crop) -> Vec<Tile> {
 impl Frame {
     /// Nothing yet of a plan.
     pub(super) fn with_channels(scene: &Scene, channels: Vec<String>, plan: Plan) -> Self {
-        let window = scene.film.window();
+        let (window, place) = (scene.film.window(), scene.film.place());
         let samples = scene.sampler.sample_count;
         let first = plan.shard.samples(samples).start;
         let cell = |(number, tile): (u32, Tile)| {
@@ -135,7 +137,8 @@ impl Frame {
         };
         let tiles = (0..).zip(tiles(window)).filter(|(number, _)| plan.shard.has_tile(*number));
         let cells = tiles.map(cell).collect();
-        Self { plan, samples, window, channels, cells, earlier: Duration::ZERO, started: Mutex::new(None) }
+        let (earlier, started) = (Duration::ZERO, Mutex::new(None));
+        Self { plan, samples, window, place, channels, cells, earlier, started }
     }
 
     /// Takes over what a part has, which belongs here.
@@ -196,6 +199,7 @@ impl Frame {
             channels: self.channels.clone(),
             width: self.window.width,
             height: self.window.height,
+            place: self.place,
             samples: self.samples,
             plan: self.plan,
             time: self.time(),
@@ -277,7 +281,7 @@ impl Frame {
             statistics.merge(&state.statistics);
         }
         statistics.time = self.time();
-        Rendered { picture: film.develop(), statistics }
+        Rendered { picture: Picture { place: self.place, ..film.develop() }, statistics }
     }
 }
 

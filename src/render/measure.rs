@@ -29,9 +29,9 @@ const CHUNK: usize = 4096;
 pub struct Timed {
     /// Rays that hit, or are blocked.
     pub hits: u64,
-    /// Sum of the hits' t in the order of the rays; 0 for any-hit.
+    /// Sum of the hits' t, in lengths of their rays' directions, in the order of the rays; 0 for any-hit.
     pub t_sum: f64,
-    /// Of the runs after the warm-up.
+    /// Wall time of the best of the runs after the warm-up.
     pub best: Duration,
 }
 

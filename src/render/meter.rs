@@ -18,7 +18,7 @@ const SIDE: u32 = 16;
 pub struct Reading {
     /// E in W/m², three bands.
     pub irradiance: DVec3,
-    /// Of the mean: one standard deviation.
+    /// Of that mean: one standard deviation, in W/m².
     pub standard_error: DVec3,
     /// Samples in all.
     pub samples: u64,

@@ -51,7 +51,7 @@ pub(super) enum Stage {
     Add,
 }
 
-/// Where the time of a render by packets went, summed over threads.
+/// Where the time of a render by packets went: time on a clock, summed over threads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Profile {
     /// Rays through the tree, nearest hits and shadows.

@@ -45,7 +45,7 @@ mod tests {
             ..Mesh::default()
         };
         let channels = ["R", "G", "B"].map(|name| Channel { name: name.into(), samples: vec![1.0] });
-        let picture = Picture { width: 1, height: 1, channels: channels.into() };
+        let picture = Picture { width: 1, height: 1, channels: channels.into(), place: None };
         SceneDescription {
             shapes: vec![Shape {
                 name: "triangle".into(),

@@ -152,7 +152,7 @@ mod tests {
 
     #[test]
     fn what_is_shared_counts_once_wherever_it_is() {
-        let picture = |width| Arc::new(Picture { width, height: 1, channels: vec![] });
+        let picture = |width| Arc::new(Picture { width, height: 1, ..Picture::default() });
         let (one, other) = (picture(1), picture(2));
         let diffuse = |picture| Material::Diffuse { reflectance: texture(picture) };
         let blend =

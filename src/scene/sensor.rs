@@ -2,6 +2,8 @@
 
 use glam::DAffine3;
 
+use crate::picture::Place;
+
 /// A camera and what belongs to it. Camera space looks along +Z, +Y is up and **+X points to the
 /// left** of the picture, as in Mitsuba.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,9 +12,9 @@ pub struct Sensor {
     pub to_world: DAffine3,
     /// How directions become pixels.
     pub projection: Projection,
-    /// Rays start at this distance along the axis; nearer geometry is invisible.
+    /// Rays start at this distance along the axis, in camera space; nearer geometry is invisible.
     pub near_clip: f64,
-    /// Rays end at this distance along the axis.
+    /// Rays end at this distance along the axis, in camera space.
     pub far_clip: f64,
     /// The picture.
     pub film: Film,
@@ -45,9 +47,9 @@ pub enum Projection {
     ThinLens {
         /// As seen from the centre of the lens; see [`Projection::Perspective`].
         x_fov: f64,
-        /// Radius of the aperture, a disc; positive.
+        /// Radius of the aperture, a disc, in camera space; positive.
         aperture_radius: f64,
-        /// Distance along the axis of the plane in focus; positive.
+        /// Distance along the axis of the plane in focus, in camera space; positive.
         focus_distance: f64,
     },
     /// Parallel rays; the film's width spans camera x in [-1, 1].
@@ -84,6 +86,11 @@ impl Film {
     /// The part that is rendered.
     pub fn window(&self) -> Crop {
         self.crop.unwrap_or(Crop { x: 0, y: 0, width: self.width, height: self.height })
+    }
+
+    /// Where the picture is in the film, if it is a part of it.
+    pub fn place(&self) -> Option<Place> {
+        self.crop.map(|Crop { x, y, .. }| Place { x, y, width: self.width, height: self.height })
     }
 }
 
@@ -130,15 +137,15 @@ pub enum ReconstructionFilter {
     Box,
     /// A pyramid.
     Tent {
-        /// Half of its base; positive.
+        /// Half of its base, in pixels; positive.
         radius: f64,
     },
     /// A bell curve, lowered so that it ends at four standard deviations.
     Gaussian {
-        /// Standard deviation; positive.
+        /// Standard deviation, in pixels; positive.
         stddev: f64,
     },
-    /// Mitchell's and Netravali's cubics \[MN88\]; ends at 2.
+    /// Mitchell's and Netravali's cubics \[MN88\]; ends at 2 pixels.
     Mitchell {
         /// Share of blur.
         b: f64,
@@ -149,7 +156,7 @@ pub enum ReconstructionFilter {
     CatmullRom,
     /// sinc x · sinc x/n.
     Lanczos {
-        /// n: lobes on each side, and where it ends; at least 1.
+        /// n: lobes on each side, and where it ends, in pixels; at least 1.
         lobes: u32,
     },
 }

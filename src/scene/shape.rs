@@ -84,7 +84,7 @@ pub enum Geometry {
 /// Indexed triangles in local space. Every index is in range; every coordinate is finite.
 #[derive(Clone, Default, PartialEq)]
 pub struct Mesh {
-    /// Vertex positions.
+    /// Vertex positions, in local space as all of the mesh.
     pub positions: Vec<Vec3>,
     /// Vertex normals, one a position, not necessarily of unit length; empty if the file has none:
     /// then smooth normals are computed, weighted by the corner's angle.
@@ -105,7 +105,7 @@ pub struct Attribute {
     pub name: String,
     /// What has a value.
     pub per: Per,
-    /// Finite; a single number is grey.
+    /// As the file has them, without a unit; finite. A single number is grey.
     pub values: Vec<Rgb>,
 }
 

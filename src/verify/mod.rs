@@ -30,7 +30,7 @@ const KINDS: usize = 21;
 pub struct Exhibit {
     /// In a sentence.
     pub what: String,
-    /// Enough of them; empty if it takes the whole scene.
+    /// Enough of them, in world space; empty if it takes the whole scene.
     pub triangles: Vec<[Vec3; 3]>,
     /// In their order.
     pub rays: Vec<Ray32>,

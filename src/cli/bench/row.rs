@@ -74,20 +74,17 @@ impl Row {
 impl fmt::Display for Row {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let share = 100.0 * self.hits as f64 / self.rays as f64;
-        write!(
-            f,
-            "  {:<9} {:<8} {:>9} {share:>6.1} {:>9.2}",
-            self.class,
-            self.query,
-            grouped(self.rays),
-            self.mrays_per_s
-        )?;
+        let class = match self.query {
+            "any" => format!("{} any", self.class),
+            _ => self.class.to_owned(),
+        };
+        write!(f, "  {class:<10} {:>9} {share:>5.1} {:>7.2}", grouped(self.rays), self.mrays_per_s)?;
         if let Some(Single { mrays_per_s, packets, singles }) = self.single {
-            let per_ray = |n: u64| n as f64 / self.rays as f64;
+            let per_ray = |n: u64| short(n as f64 / self.rays as f64);
             let factor = if mrays_per_s > 0.0 { self.mrays_per_s / mrays_per_s } else { 0.0 };
             write!(
                 f,
-                " {:>7.2} {:>7.2} {:>6.1} | {mrays_per_s:>9.2} {:>7.2} {:>7.2} | {factor:>6.2}",
+                " {:>5} {:>5} {:>5.1} {mrays_per_s:>7.2} {:>5} {:>5} {factor:>5.2}",
                 per_ray(packets.nodes),
                 per_ray(packets.primitives),
                 100.0 * packets.lane_use(),
@@ -106,6 +103,18 @@ impl fmt::Display for Row {
             ),
         }
     }
+}
+
+/// Four digits that count, so that a line is no longer than a terminal's 80 columns.
+fn short(x: f64) -> String {
+    let places = if x < 100.0 {
+        2
+    } else if x < 1000.0 {
+        1
+    } else {
+        0
+    };
+    format!("{x:.places$}")
 }
 
 /// The tree, and the head of the table.
@@ -129,25 +138,19 @@ impl fmt::Display for Build {
         writeln!(f, "  {}, {}", counted(triangles, "triangle"), counted(quadrics, "quadric"))?;
         writeln!(
             f,
-            "  tree of {} quality: {}, {:.2} M primitives/s on {}; {}, {}, {each:.0} bytes a primitive",
+            "  tree of {} quality: {}, {:.2} M primitives/s on {}",
             QualityName::from(quality),
             time(Duration::from_secs_f64(bvh_time.as_secs_f64())),
             mega_per_second(primitives, bvh_time),
             counted(rayon::current_num_threads() as u64, "thread"),
-            counted(bvh_nodes, "node"),
-            memory(bvh_bytes),
         )?;
+        writeln!(f, "  {}, {}, {each:.0} bytes a primitive", counted(bvh_nodes, "node"), memory(bvh_bytes))?;
         writeln!(f)?;
-        let packets = "packets: nodes and tests a ray";
+        writeln!(f, "  {:<10} {:>9} {:>5} {:<25} single rays", "", "", "hits", "packets")?;
         writeln!(
             f,
-            "  {:<9} {:<8} {:>9} {:>6} {packets:>32} | {:<25} | packets",
-            "", "", "", "hits", "single rays"
-        )?;
-        writeln!(
-            f,
-            "  {:<9} {:<8} {:>9} {:>6} {:>9} {:>7} {:>7} {:>6} | {:>9} {:>7} {:>7} | /single",
-            "class", "query", "rays", "%", "Mrays/s", "nodes", "tests", "lanes%", "Mrays/s", "nodes", "tests"
+            "  {:<10} {:>9} {:>5} {:>7} {:>5} {:>5} {:>5} {:>7} {:>5} {:>5} ratio",
+            "class", "rays", "%", "Mrays/s", "nodes", "tests", "lanes", "Mrays/s", "nodes", "tests"
         )
     }
 }

@@ -13,8 +13,13 @@ use crate::{
     scene::{Material, MerlTable},
 };
 
+const EXAMPLES: &str = "\
+Examples:
+  packlight brdf sheet -o sheet.png --spp 256";
+
 /// Arguments of `brdf sheet`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(super) struct Arguments {
     /// The sheet, as .png or .svg
     #[arg(short, long, value_name = "OUT", value_parser = Plot::parse)]

@@ -98,7 +98,7 @@ mod tests {
     fn only_what_was_not_asked_for_is_taken_out() {
         let channel = |name: &str| Channel { name: name.into(), samples: vec![0.0] };
         let names = ["R", "albedo.R", "normal.X", "normals.X", "depth.Z"];
-        let picture = Picture { width: 1, height: 1, channels: names.map(channel).into() };
+        let picture = Picture { width: 1, height: 1, channels: names.map(channel).into(), place: None };
         let asked = [AovChannel { name: "normal".into(), kind: Aov::ShNormal }];
         let besides = besides(&asked);
         assert_eq!(besides.len(), 1);

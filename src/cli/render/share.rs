@@ -8,8 +8,7 @@ use crate::{
     render::{Shard, ShardBy},
 };
 
-const MACHINES: &str =
-    "Several machines (their parts become the picture of one machine by `packlight merge`)";
+const MACHINES: &str = "Several machines (`packlight merge` joins what they make)";
 
 /// The options.
 #[derive(Clone, Debug, Args)]

@@ -1,7 +1,7 @@
 //! Parts as bytes, and back.
 //!
 //! ```text
-//! magic, version · facts · scene · channels · width, height, samples · shard, target error · time
+//! magic, version · facts · scene · channels · width, height, samples · place · shard, target error · time
 //! tiles: number · first and next sample · statistics · nodes: level, index, sums · open block · spread
 //! digest of all that was before
 //! ```
@@ -19,13 +19,14 @@ use crate::{
         sums::{Node, Sums},
     },
     math::Digest,
+    picture::Place,
     render::{LaneUse, Plan, Shard, ShardBy, Statistics},
 };
 
 const MAGIC: &[u8] = b"packlight part\n";
 
 /// Grows whenever the meaning of the bytes changes.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// Why bytes are no part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -60,6 +61,8 @@ impl Part {
         out.u32(self.channels.len() as u32);
         self.channels.iter().for_each(|channel| out.text(channel));
         [self.width, self.height, self.samples].into_iter().for_each(|number| out.u32(number));
+        let place = self.place.map(|Place { x, y, width, height }| [x, y, width, height]);
+        out.words(place.as_slice().as_flattened());
         let Plan { shard, target_error } = self.plan;
         let by = u32::from(shard.by == ShardBy::Samples);
         [shard.index, shard.count, by].into_iter().for_each(|number| out.u32(number));
@@ -116,6 +119,11 @@ impl Writer {
         self.0.extend(text.as_bytes());
     }
 
+    fn words(&mut self, words: &[u32]) {
+        self.u32(words.len() as u32);
+        self.0.extend(words.iter().flat_map(|word| word.to_le_bytes()));
+    }
+
     fn floats(&mut self, floats: &[f32]) {
         self.u32(floats.len() as u32);
         self.0.extend(floats.iter().flat_map(|x| x.to_bits().to_le_bytes()));
@@ -124,8 +132,7 @@ impl Writer {
     fn sums(&mut self, sums: &Sums) {
         self.floats(&sums.values);
         self.floats(&sums.weights);
-        self.u32(sums.counts.len() as u32);
-        self.0.extend(sums.counts.iter().flat_map(|count| count.to_le_bytes()));
+        self.words(&sums.counts);
     }
 
     fn tile(&mut self, PartTile { number, film, statistics }: &PartTile) {
@@ -218,6 +225,11 @@ impl Reader<'_> {
         let facts = self.list(|reader| Some((reader.text()?, reader.text()?)))?;
         let (scene, channels) = (self.text()?, self.list(Self::text)?);
         let (width, height, samples) = (self.u32()?, self.u32()?, self.u32()?);
+        let place = match *self.words()? {
+            [] => None,
+            [x, y, width, height] => Some(Place { x, y, width, height }),
+            _ => return None,
+        };
         let (index, count) = (self.u32()?, self.u32()?);
         let by = if self.u32()? == 0 { ShardBy::Tiles } else { ShardBy::Samples };
         let target_error = self.floats()?.first().copied();
@@ -230,6 +242,7 @@ impl Reader<'_> {
             channels,
             width,
             height,
+            place,
             samples,
             plan,
             time,
@@ -303,6 +316,7 @@ mod tests {
             channels: ["R", "G", "B"].map(String::from).into(),
             width: 3,
             height: 2,
+            place: Some(Place { x: 1, y: 0, width: 4, height: 2 }),
             samples: 32,
             plan: Plan { shard: Shard::WHOLE, target_error: Some(0.01) },
             time: Duration::from_millis(1234),
@@ -353,9 +367,14 @@ mod tests {
         let mut newer = part().to_bytes();
         newer[MAGIC.len()] = 9;
         assert_eq!(Part::from_bytes(&newer), Err(PartFormatError::Version(9)));
-        let mut contradiction = part();
-        contradiction.tiles[0].number = 1;
-        let error = Part::from_bytes(&contradiction.to_bytes()).unwrap_err();
-        assert!(matches!(error, PartFormatError::Contradiction(_)), "{error}");
+        let contradicted = |change: &dyn Fn(&mut Part)| {
+            let mut part = part();
+            change(&mut part);
+            let error = Part::from_bytes(&part.to_bytes()).unwrap_err();
+            assert!(matches!(error, PartFormatError::Contradiction(_)), "{error}");
+        };
+        contradicted(&|part| part.tiles[0].number = 1);
+        contradicted(&|part| part.place = Some(Place { x: 2, y: 0, width: 4, height: 2 }));
+        contradicted(&|part| part.place = Some(Place { x: 0, y: u32::MAX, width: 4, height: 2 }));
     }
 }

@@ -113,7 +113,7 @@ fn same_cut(there: &Part, here: &Part) -> Result<(), Difference> {
 
 fn join(mut parts: Vec<(String, Part)>) -> (Picture, Statistics, Coverage) {
     parts.sort_by_key(|(_, part)| part.plan.shard.index);
-    let (window, samples) = (parts[0].1.window(), parts[0].1.samples);
+    let (window, place, samples) = (parts[0].1.window(), parts[0].1.place, parts[0].1.samples);
     let mut film = Film::new(window.width, window.height, &parts[0].1.channels);
     let tiles = tiles(window);
     let mut statistics = Statistics::default();
@@ -146,7 +146,7 @@ fn join(mut parts: Vec<(String, Part)>) -> (Picture, Statistics, Coverage) {
         }
     }
     statistics.time = time;
-    (film.develop(), statistics, coverage)
+    (Picture { place, ..film.develop() }, statistics, coverage)
 }
 
 /// `shards 2, 5 and 7 of 9 are not there`; numbers count from 1.

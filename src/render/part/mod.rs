@@ -15,7 +15,7 @@ pub use merge::{MergeError, Merged, merge};
 use super::{Plan, frame::tiles, statistics::Statistics};
 use crate::{
     film::{Film, TileFilm},
-    picture::Picture,
+    picture::{Picture, Place},
     scene::Crop,
 };
 
@@ -37,11 +37,13 @@ pub struct Part {
     pub width: u32,
     /// Rows of the picture.
     pub height: u32,
+    /// Where it is in the film, if it is not all of it.
+    pub place: Option<Place>,
     /// Samples a pixel that are asked for.
     pub samples: u32,
     /// What of it was to be rendered.
     pub plan: Plan,
-    /// Spent on it so far.
+    /// Wall time spent on it so far.
     pub time: Duration,
     /// What is there, by rising number.
     pub tiles: Vec<PartTile>,
@@ -106,7 +108,7 @@ impl Part {
         for tile in &self.tiles {
             film.place(&tiles[tile.number as usize], &tile.film.total());
         }
-        film.develop()
+        Picture { place: self.place, ..film.develop() }
     }
 
     /// Are all its samples there?
@@ -124,6 +126,13 @@ impl Part {
         let Plan { shard, target_error } = self.plan;
         if self.width.max(self.height) > MAX_SIDE || shard.count > MAX_SHARDS {
             return Some("it is larger than anything that is rendered");
+        }
+        let fits =
+            |first: u32, length: u32, whole: u32| whole <= MAX_SIDE && whole >= first.saturating_add(length);
+        let inside =
+            |place: Place| fits(place.x, self.width, place.width) && fits(place.y, self.height, place.height);
+        if !self.place.is_none_or(inside) {
+            return Some("it is outside of its film");
         }
         if shard.index >= shard.count {
             return Some("there is no such shard");

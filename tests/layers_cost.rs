@@ -1,0 +1,60 @@
+//! Layers cost next to nothing: what the camera sees is known before light is asked for.
+
+#![allow(missing_docs)]
+
+use std::{hint::black_box, path::Path, time::Instant};
+
+use packlight::{
+    compile::{Scene, compile},
+    load::{LoadOptions, load},
+    render::{Settings, render},
+    scene::{Aov, AovChannel, Film},
+};
+
+/// The most that a render may take with six layers, as a multiple of what it takes without.
+const MOST: f64 = 1.1;
+
+/// Renders of each kind, in turn, before it is believed that it takes longer. Whatever else the machine does makes
+/// some of them slower, and none of them faster.
+const TURNS: usize = 60;
+
+fn scene(layers: &[(&str, Aov)]) -> Scene {
+    let mut scene =
+        load(Path::new("scenes/cornell.xml"), &LoadOptions::default()).expect("it loads").description;
+    scene.sensor.film = Film::new(96, 96);
+    scene.sensor.sampler.sample_count = 16;
+    scene.aovs = layers.iter().map(|&(name, kind)| AovChannel { name: name.into(), kind }).collect();
+    compile(&scene).expect("it compiles")
+}
+
+#[test]
+fn six_layers_take_no_more_than_a_tenth() {
+    if cfg!(debug_assertions) {
+        return println!("skipped: times are those of release builds");
+    }
+    let six = [
+        ("albedo", Aov::DirectionalAlbedo),
+        ("normal", Aov::ShNormal),
+        ("depth", Aov::Depth),
+        ("position", Aov::Position),
+        ("uv", Aov::Uv),
+        ("material_id", Aov::MaterialId),
+    ];
+    let scenes = [scene(&[]), scene(&six)];
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be had");
+    let seconds = |scene: &Scene| {
+        let start = Instant::now();
+        black_box(pool.install(|| render(scene, &Settings::default(), &|_| {})));
+        start.elapsed().as_secs_f64()
+    };
+    let mut least = [f64::INFINITY; 2];
+    let mut ratio = f64::INFINITY;
+    for turn in 0..TURNS {
+        least = std::array::from_fn(|kind| least[kind].min(seconds(&scenes[kind])));
+        ratio = least[1] / least[0];
+        if turn > 2 && ratio <= MOST {
+            return println!("{ratio:.3} times as long after {} turns", turn + 1);
+        }
+    }
+    panic!("six layers take {ratio:.3} times as long, which may be {MOST}");
+}

@@ -1,0 +1,124 @@
+//! The program on a terminal and in shells: colours and folded lines there, plain lines in a pipe, words completed.
+//!
+//! `script` makes the terminal. It and the shells are used where they are installed.
+
+#![allow(missing_docs)]
+#![cfg(target_os = "linux")]
+
+mod program;
+
+use std::{fs, process::Command};
+
+use program::{folder, packlight, path, stderr, stdout};
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_packlight");
+
+/// Columns of the terminal.
+const COLUMNS: usize = 80;
+
+/// What somebody sees who types the words at a terminal, or `None` if there is no `script`.
+fn on_a_terminal(words: &str, no_color: &str) -> Option<String> {
+    let line = format!("stty rows 50 cols {COLUMNS}; {PROGRAM} {words}");
+    let mut command = Command::new("script");
+    command.args(["-qec", &line, "/dev/null"]).current_dir(env!("CARGO_MANIFEST_DIR"));
+    let Ok(output) = command.env("NO_COLOR", no_color).output() else {
+        println!("skipped: there is no `script`");
+        return None;
+    };
+    Some(stdout(&output).replace('\r', ""))
+}
+
+/// A scene with a slip.
+fn wrong(name: &str) -> String {
+    let scene = path(&folder(name), "wrong.xml");
+    fs::write(&scene, "<scene version='3.0.0'><shap/></scene>").expect("writable");
+    scene
+}
+
+#[test]
+fn colours_are_for_terminals_that_want_them() {
+    let scene = wrong("terminal/colours");
+    let told = stderr(&packlight(&["info", &scene]));
+    assert!(told.contains("did you mean `shape`?") && !told.contains('\x1b'), "{told}");
+    for words in [format!("info {scene}"), "render no-such.xml -o a.exr".into(), "rendr".into()] {
+        let Some(coloured) = on_a_terminal(&words, "") else { return };
+        assert!(coloured.contains("\x1b[31m") || coloured.contains("\x1b[1m"), "{coloured}");
+        let plain = on_a_terminal(&words, "1").expect("it was there");
+        assert!(plain.contains("error:") && !plain.contains('\x1b'), "{plain}");
+    }
+}
+
+#[test]
+fn nothing_is_wider_than_the_terminal() {
+    let out = path(&folder("terminal/wide"), "a.exr");
+    let render = format!("render scenes/cornell.xml -o {out} --width 32 --spp 1 --stats");
+    for words in [
+        "info scenes/materials.xml",
+        "bench scenes/cornell.xml --repeat 1",
+        "verify scenes/cornell.xml --most 512",
+        "render --help",
+        "bench --help",
+        "--help",
+        &render,
+    ] {
+        let Some(told) = on_a_terminal(words, "1") else { return };
+        // But for the names of files.
+        let wide: Vec<&str> =
+            told.lines().filter(|line| line.chars().count() > COLUMNS && !line.contains(&out)).collect();
+        assert!(wide.is_empty() && told.lines().count() > 5, "{words}: {wide:#?}\n{told}");
+    }
+    // In a pipe a line stays a line.
+    let told = stdout(&packlight(&["info", "scenes/materials.xml"]));
+    assert!(told.lines().any(|line| line.contains("materials") && line.contains("ward")), "{told}");
+}
+
+/// What a shell prints, or `None` if it is not there.
+fn shell(name: &str, script: &str) -> Option<String> {
+    let folder = std::path::Path::new(PROGRAM).parent().expect("it is in a folder").display().to_string();
+    let path = format!("{folder}:{}", std::env::var("PATH").unwrap_or_default());
+    let Ok(output) = Command::new(name).args(["-c", script]).env("PATH", path).output() else {
+        println!("skipped: there is no `{name}`");
+        return None;
+    };
+    Some(stdout(&output) + &stderr(&output))
+}
+
+#[test]
+fn shells_complete_commands_options_and_values() {
+    let bash = |words: &str, word: &str, before: &str| {
+        let count = words.split(' ').count();
+        shell(
+            "bash",
+            &format!(
+                "source <(packlight completions bash); COMP_WORDS=({words} '{word}'); COMP_CWORD={count}; \
+                 _packlight packlight '{word}' {before}; echo \"${{COMPREPLY[@]}}\""
+            ),
+        )
+    };
+    let fish = |line: &str| {
+        shell("fish", &format!("packlight completions fish | source; complete -C '{line}' | cut -f1 | xargs"))
+    };
+    for (words, word, before, expected) in [
+        ("packlight", "comp", "packlight", "compare completions\n"),
+        ("packlight render", "--ton", "render", "--tonemap\n"),
+        ("packlight render --exr-compression", "zi", "--exr-compression", "zips zip\n"),
+        ("packlight brdf sheet", "--sp", "sheet", "--spp\n"),
+    ] {
+        let sorted = |told: &str| {
+            let mut words: Vec<String> = told.split_whitespace().map(String::from).collect();
+            words.sort();
+            words
+        };
+        if let Some(told) = bash(words, word, before) {
+            assert_eq!(sorted(&told), sorted(expected), "{words} {word}: {told}");
+        }
+        if let Some(told) = fish(&format!("{words} {word}")) {
+            assert_eq!(sorted(&told), sorted(expected), "{words} {word}: {told}");
+        }
+    }
+    // zsh completes at a prompt only; that it takes the script is all that is asked here.
+    let takes = "autoload -U compinit; compinit -D -u; eval \"$(packlight completions zsh)\"; echo ${+functions[_packlight]}";
+    if let Some(told) = shell("zsh", takes) {
+        assert_eq!(told, "1\n");
+    }
+}
