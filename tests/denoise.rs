@@ -114,7 +114,7 @@ fn albedo_and_normals_are_looked_at() {
     };
     let grain =
         |x: u32, y: u32| (x * 7919 + y * 104_729).wrapping_mul(2_654_435_761) as f32 / u32::MAX as f32;
-    let stripes = |x: u32, _: u32| if x / 8 % 2 == 0 { 0.2 } else { 0.8 };
+    let stripes = |x: u32, _: u32| if (x / 8).is_multiple_of(2) { 0.2 } else { 0.8 };
     let mut channels: Vec<Channel> = ["R", "G", "B"].map(|name| plane(name, &grain)).into();
     channels.extend(["flat.R", "flat.G", "flat.B"].map(|name| plane(name, &|_, _| 0.5)));
     channels.extend(["stripes.R", "stripes.G", "stripes.B"].map(|name| plane(name, &stripes)));
