@@ -41,6 +41,7 @@ const FLOORS: &[(&str, u32)] = &[
 const DOORS: &[(&str, &[&str])] = &[
     ("base64", &["lobe/"]),
     ("bumpalo", &["render/"]),
+    ("bytemuck", &["geometry/ray.rs"]),
     ("clap", &["cli/"]),
     ("clap_complete", &["cli/"]),
     ("clap_mangen", &["cli/"]),

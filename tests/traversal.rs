@@ -24,12 +24,13 @@ fn bits(hit: Hit) -> (u32, u32, u32, PrimitiveId) {
 
 fn packet(rays: &[Ray; 8]) -> Rayx8 {
     RayLanes {
-        org: Vector3::from_fn(|i| rays[i].org),
-        dir: Vector3::from_fn(|i| rays[i].dir),
         rdir: Vector3::from_fn(|i| rays[i].rdir),
-        t_near: f32x8::from_fn(|i| rays[i].t_near),
-        t_far: f32x8::from_fn(|i| rays[i].t_far),
-        margin: f32x8::splat(f32::INFINITY),
+        ..RayLanes::new(
+            Vector3::from_fn(|i| rays[i].org),
+            Vector3::from_fn(|i| rays[i].dir),
+            f32x8::from_fn(|i| rays[i].t_near),
+            f32x8::from_fn(|i| rays[i].t_far),
+        )
     }
 }
 

@@ -17,7 +17,7 @@ impl Bvh {
         if self.nodes.is_empty() {
             return;
         }
-        let lanes = RayLanes::splat(ray).within(self.reach());
+        let lanes = RayLanes::splat(ray);
         let negative = [0, 1, 2].map(|axis| ray.rdir[axis] < 0.0);
         let Traversal { stack, tally, .. } = traversal;
         stack[0] = (Child::inner(0), f32::NEG_INFINITY);

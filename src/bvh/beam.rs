@@ -4,9 +4,9 @@
 //! bounds on products of intervals are taken with the rounded operations of the exact slab test, which are
 //! monotone, so a box that a ray of the beam enters is never culled.
 
-use super::Node;
-use crate::geometry::{Pencils, Rayx8, aabb};
-use crate::simd::{Mask8, Real, f32x8, transpose, vector3};
+use super::{Node, packet::Packet};
+use crate::geometry::{Pencils, RayLanes, Rayx16, aabb};
+use crate::simd::{Mask8, Real, f32x8, f32x16, transpose, vector3};
 
 /// Beams in lanes, all into one octant.
 pub(super) struct Beam {
@@ -29,21 +29,24 @@ type Range = (f32x8, f32x8);
 impl Beam {
     /// One beam around the active rays of a packet, in all lanes; `None` if they point into several
     /// octants.
-    pub(super) fn of_packet(ray: &Rayx8, active: Mask8) -> Option<Self> {
-        let low = |x: f32x8| f32x8::select(active, x, f32x8::splat(f32::INFINITY)).reduce_min();
-        let high = |x: f32x8| f32x8::select(active, x, f32x8::splat(f32::NEG_INFINITY)).reduce_max();
-        let range = |x: f32x8| (f32x8::splat(low(x)), f32x8::splat(high(x)));
+    pub(super) fn of_packet<R: Packet>(ray: &RayLanes<R>, active: R::Mask) -> Option<Self> {
+        let low = |x: R| R::select(active, x, R::splat(f32::INFINITY)).least();
+        let high = |x: R| R::select(active, x, R::splat(f32::NEG_INFINITY)).greatest();
+        let range = |x: R| (f32x8::splat(low(x)), f32x8::splat(high(x)));
         let t_near = f32x8::splat(low(ray.t_near));
         let (org, rdir) = ([ray.org.x, ray.org.y, ray.org.z], [ray.rdir.x, ray.rdir.y, ray.rdir.z]);
         Self::new(org.map(range), rdir.map(range), t_near)
     }
 
-    /// Eight beams, each around a whole packet; `None` if the packets point into several octants.
-    pub(super) fn of_packets(packets: &[Rayx8; 8]) -> Option<Self> {
-        // Transposed, a packet is a lane, and what was a reduction is seven operations for all of them.
-        let range = |of: fn(&Rayx8) -> f32x8| -> Range {
-            let [first, rest @ ..] = transpose(std::array::from_fn(|i| of(&packets[i])));
-            rest.into_iter().fold((first, first), |(low, high), x| (x.min(low), x.max(high)))
+    /// Eight beams, each around sixteen rays; `None` if they point into several octants.
+    pub(super) fn of_bundles(rays: &[&Rayx16; 8]) -> Option<Self> {
+        // Transposed, a bundle is a lane, and what was a reduction is seven operations for all of them.
+        let range = |of: fn(&Rayx16) -> f32x16| -> Range {
+            let halves: [[f32x8; 2]; 8] = std::array::from_fn(|i| of(rays[i]).halves());
+            let least = transpose(halves.map(|[one, other]| one.min(other)));
+            let greatest = transpose(halves.map(|[one, other]| one.max(other)));
+            let least = least.into_iter().reduce(Real::min).unwrap_or_default();
+            (least, greatest.into_iter().reduce(Real::max).unwrap_or_default())
         };
         let org = [range(|p| p.org.x), range(|p| p.org.y), range(|p| p.org.z)];
         let rdir = [range(|p| p.rdir.x), range(|p| p.rdir.y), range(|p| p.rdir.z)];
@@ -147,19 +150,19 @@ impl Beam {
     /// The rays of a packet within the beam that enter a child before `t_far`: the exact test; lanes are
     /// rays.
     #[inline]
-    pub(super) fn rays(&self, node: &Node, place: usize, ray: &Rayx8, t_far: f32x8) -> Mask8 {
+    pub(super) fn rays<R: Real>(&self, node: &Node, place: usize, ray: &RayLanes<R>, t_far: R) -> R::Mask {
         let [x, y, z] = [0, 1, 2].map(|axis| self.planes(node, place, axis));
         let (near, far) = (vector3(x.0, y.0, z.0), vector3(x.1, y.1, z.1));
         let near = (near - ray.org) * ray.rdir;
-        let far = ((far - ray.org) * ray.rdir).scale(f32x8::splat(aabb::WIDEN));
+        let far = ((far - ray.org) * ray.rdir).scale(R::splat(aabb::WIDEN));
         let low = near.z.max(near.y.max(near.x.max(ray.t_near)));
         low.le(far.z.min(far.y.min(far.x.min(t_far))))
     }
 
     /// The bounds of one child along an axis, in all lanes.
     #[inline]
-    fn planes(&self, node: &Node, place: usize, axis: usize) -> (f32x8, f32x8) {
+    fn planes<R: Real>(&self, node: &Node, place: usize, axis: usize) -> (R, R) {
         let (near, far) = node.slabs(axis, self.negative[axis]);
-        (f32x8::splat(near[place]), f32x8::splat(far[place]))
+        (R::splat(near[place]), R::splat(far[place]))
     }
 }

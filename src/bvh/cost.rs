@@ -8,22 +8,22 @@ use std::ops::{Add, AddAssign, Mul};
 pub(super) struct Cost(pub(super) f32);
 
 impl Cost {
-    /// Sixty-four rays looked at together.
-    pub(super) const TILE: Self = Self(600.0);
+    /// A tile set up.
+    pub(super) const TILE: Self = Self(1200.0);
     /// A node of a tile, and each child that the tile may enter.
     pub(super) const TILE_NODE: Self = Self(40.0);
     pub(super) const TILE_CHILD: Self = Self(25.0);
     /// A leaf of a tile, and the planes of each primitive.
     pub(super) const TILE_LEAF: Self = Self(80.0);
     pub(super) const TILE_PLANES: Self = Self(25.0);
-    /// A packet against a primitive.
-    pub(super) const PACKET_TEST: Self = Self(45.0);
-    /// A packet, its nodes, and the children that it enters.
-    pub(super) const PACKET: Self = Self(100.0);
-    pub(super) const PACKET_NODE: Self = Self(35.0);
+    /// Sixteen rays against a primitive.
+    pub(super) const PACKET_TEST: Self = Self(80.0);
+    /// A packet of sixteen, its nodes, and the children that it enters.
+    pub(super) const PACKET: Self = Self(150.0);
+    pub(super) const PACKET_NODE: Self = Self(45.0);
     /// A node of a packet that points into several octants: eight tests of a box.
-    pub(super) const PACKET_NODE_APART: Self = Self(200.0);
-    pub(super) const PACKET_CHILD: Self = Self(25.0);
+    pub(super) const PACKET_NODE_APART: Self = Self(340.0);
+    pub(super) const PACKET_CHILD: Self = Self(30.0);
     /// How much more packets cost whose nodes are far away in memory, or whose rays are scattered: they wait for
     /// one node after the other.
     pub(super) const FAR: u32 = 2;

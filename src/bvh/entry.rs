@@ -7,8 +7,8 @@
 use glam::Vec3;
 
 use super::{Bvh, Child, Kind, Node};
-use crate::geometry::{Aabb, Rayx8};
-use crate::simd::{Mask, Mask8, Real, Vec3x8, f32x8};
+use crate::geometry::{Aabb, Rayx16};
+use crate::simd::{Mask, Mask8, Mask16, Real, Vec3x16, f32x8, f32x16};
 
 /// Ulps of a coordinate by which the box around segments is wider than they are, against the rounding of
 /// their ends and of the slab tests that decide.
@@ -16,21 +16,21 @@ const MARGIN: f32 = 16.0 * f32::EPSILON;
 
 /// The box around segments, as it grows.
 pub(super) struct Segments {
-    low: Vec3x8,
-    high: Vec3x8,
+    low: Vec3x16,
+    high: Vec3x16,
 }
 
 impl Segments {
     pub(super) fn none() -> Self {
-        Self { low: Vec3x8::splat(Vec3::INFINITY), high: Vec3x8::splat(Vec3::NEG_INFINITY) }
+        Self { low: Vec3x16::splat(Vec3::INFINITY), high: Vec3x16::splat(Vec3::NEG_INFINITY) }
     }
 
     #[inline]
-    pub(super) fn add(&mut self, rays: &Rayx8, active: Mask8) {
-        for t in [rays.t_near.min(f32x8::zero()), rays.t_far] {
+    pub(super) fn add(&mut self, rays: &Rayx16, active: Mask16) {
+        for t in [rays.t_near.min(f32x16::zero()), rays.t_far] {
             let end = rays.org + rays.dir.scale(t);
-            self.low = Vec3x8::select(active, end.min(self.low), self.low);
-            self.high = Vec3x8::select(active, end.max(self.high), self.high);
+            self.low = Vec3x16::select(active, end.min(self.low), self.low);
+            self.high = Vec3x16::select(active, end.max(self.high), self.high);
         }
     }
 

@@ -4,13 +4,14 @@
 //! class into *slots*, eight to a block, and it hands ranges of slots to whoever knows what is in them
 //! ([`Leaves`]).
 //!
-//! `build` makes it, by one of three qualities ([`Quality`]). Traversal: tiles of sixty-four rays, packets of
-//! eight, sixteen single rays in turn, one ray that meets a tree within another, or one ray and one box at a
-//! time, the reference for the others; closest hit and occlusion from one body each.
+//! `build` makes it, by one of three qualities ([`Quality`]). Traversal: tiles of up to 128 rays, packets of
+//! eight and of sixteen, sixteen single rays in turn, one ray that meets a tree within another, or one ray
+//! and one box at a time, the reference for the others; closest hit and occlusion from one body each.
 
 mod alone;
 mod beam;
 mod build;
+mod bundle;
 mod cost;
 mod entry;
 mod node;
@@ -31,8 +32,8 @@ use wave::Wave;
 
 use glam::Vec3;
 
-use crate::geometry::{Hit, Pencils, PrimitiveId, Ray, Rayx8};
-use crate::simd::{Bits, LANES, Mask8, Real, f32x8, prefetch, transpose, u32x8};
+use crate::geometry::{Hit, Pencils, PrimitiveId, Ray, Rayx8, Rayx16};
+use crate::simd::{Bits, LANES, Mask8, Mask16, Real, f32x8, f32x16, prefetch, transpose, u32x8};
 
 /// Slots in a block. A leaf never crosses from one block into the next.
 pub const BLOCK: usize = 8;
@@ -51,24 +52,32 @@ pub struct Bvh {
 
 /// Hits of a packet. `t` starts as the rays' `t_far`, `primitive` as [`PrimitiveId::NONE`]'s number.
 #[derive(Clone, Copy, Debug)]
-pub struct Hitx8 {
+pub struct HitLanes<R: Real> {
     /// Distances; for an occlusion query −∞ where something was found.
-    pub t: f32x8,
+    pub t: R,
     /// Barycentric weights of the second vertices, or as in [`Hit::u`].
-    pub u: f32x8,
+    pub u: R,
     /// Barycentric weights of the third vertices.
-    pub v: f32x8,
+    pub v: R,
     /// Primitive numbers.
-    pub primitive: u32x8,
+    pub primitive: R::Bits,
+}
+
+/// Hits of a packet.
+pub type Hitx8 = HitLanes<f32x8>;
+
+/// Hits of two packets side by side.
+pub type Hitx16 = HitLanes<f32x16>;
+
+impl<R: Real> HitLanes<R> {
+    /// Before anything is hit.
+    #[inline]
+    fn nothing(t_far: R) -> Self {
+        Self { t: t_far, u: R::zero(), v: R::zero(), primitive: R::Bits::splat(PrimitiveId::NONE.0) }
+    }
 }
 
 impl Hitx8 {
-    /// Before anything is hit.
-    #[inline]
-    fn nothing(t_far: f32x8) -> Self {
-        Self { t: t_far, u: f32x8::zero(), v: f32x8::zero(), primitive: u32x8::splat(PrimitiveId::NONE.0) }
-    }
-
     /// The same, with [`Hit::MISS`] in the lanes that hit nothing or are not active.
     #[inline]
     fn or_miss(&self, active: Mask8) -> Self {
@@ -87,10 +96,10 @@ impl Hitx8 {
     fn to_hits(self) -> [Hit; LANES] {
         let id = f32x8::from_bits(self.primitive);
         let rows = transpose([self.t, self.u, self.v, id, self.t, self.u, self.v, id]);
-        rows.map(|row| {
-            let [t, u, v, id, ..] = row.to_array();
-            Hit { t, u, v, primitive: PrimitiveId(id.to_bits()) }
-        })
+        let hit = |row: f32x8| Hit::of_row(row.half(0));
+        // One by one: mapped as an array, the hits would be copied.
+        let [a, b, c, d, e, f, g, h] = rows;
+        [hit(a), hit(b), hit(c), hit(d), hit(e), hit(f), hit(g), hit(h)]
     }
 }
 
@@ -108,16 +117,26 @@ pub trait Leaves {
         hit: &mut Hitx8,
     );
 
-    /// Eight packets, of which those in `mask` may hit something, against a leaf's (first slot, count).
-    /// `pencils` are around them, if they come from one origin. Returns how many tests of a packet
+    /// The same for sixteen rays.
+    fn intersect_bundle<const ANY: bool>(
+        &self,
+        first: u32,
+        count: u32,
+        ray: &Rayx16,
+        active: Mask16,
+        hit: &mut Hitx16,
+    );
+
+    /// Eight bundles of sixteen rays, of which those in `mask` may hit something, against a leaf's (first slot, count).
+    /// `pencils` are around them, if they come from one origin. Returns how many tests of a bundle
     /// against a primitive that took.
     fn intersect_tile<const ANY: bool>(
         &self,
         leaf: (u32, u32),
-        packets: &[Rayx8; 8],
+        rays: &[&Rayx16; 8],
         pencils: Option<&Pencils>,
         mask: u32,
-        hits: &mut [Hitx8; 8],
+        hits: &mut [Hitx16; 8],
     ) -> u32;
 
     /// Where the data of a slot's block begin, to be asked for ahead of time.

@@ -4,8 +4,8 @@
 //! leaf that blocked the last one. A ray that some surface blocks is blocked, whichever surface is found
 //! first: the answers stay the same.
 
-use super::{Child, Hitx8, Kind, Leaves, Tally, run::Run};
-use crate::simd::{Mask, Mask8, Real, f32x8};
+use super::{Child, Hitx16, Kind, Leaves, Tally, bundle::BUNDLE, run::Run};
+use crate::simd::{Mask, Real, f32x16};
 
 /// A leaf that spares fewer of the rays is not worth its tests.
 const WORTH: f32 = 0.1;
@@ -45,17 +45,17 @@ impl Occluder {
             return;
         }
         let (mut tried, mut blocked) = (0, 0);
-        for packet in 0..run.packets() {
-            let (ray, active) = (&run.rays[packet], run.active[packet]);
+        for i in 0..run.bundles() {
+            let (ray, active) = run.bundle(i);
             tried += active.count();
             tally.leaf(count, active.count());
-            let mut hit = Hitx8::nothing(ray.t_far);
-            leaves.intersect_packet::<true>(first, count, ray, active, &mut hit);
-            let by_leaf: Mask8 = hit.t.equal(f32x8::splat(f32::NEG_INFINITY)) & active;
+            let mut hit = Hitx16::nothing(ray.t_far);
+            leaves.intersect_bundle::<true>(first, count, ray, active, &mut hit);
+            let by_leaf = hit.t.equal(f32x16::splat(f32::NEG_INFINITY)) & active;
             blocked += by_leaf.count();
-            run.active[packet] = active & !by_leaf;
-            run.blocked[packet] = by_leaf;
+            run.blocked |= u64::from(by_leaf.to_bitmask()) << (i * BUNDLE);
         }
+        run.active &= !run.blocked;
         self.luck = 0.75 * self.luck + 0.25 * (blocked as f32 / tried.max(1) as f32);
     }
 }

@@ -5,9 +5,64 @@
 //! box that is left (lanes are rays). The first test never culls what the second would keep (see
 //! `beam`).
 
-use super::{Bvh, Child, Hitx8, Kind, Leaves, Node, Tally, Traversal, beam::Beam, cost::Cost};
-use crate::geometry::{Rayx8, aabb};
-use crate::simd::{Mask, Mask8, Real, Vector3, f32x8};
+use super::{Bvh, Child, HitLanes, Hitx8, Kind, Leaves, Node, Tally, Traversal, beam::Beam, cost::Cost};
+use crate::geometry::{RayLanes, Rayx8, aabb};
+use crate::simd::{Mask, Mask8, Mask16, Real, Vector3, f32x8, f32x16};
+
+/// Lanes that may go as a packet: eight, or sixteen.
+pub(super) trait Packet: Real {
+    /// The least lane.
+    fn least(self) -> f32;
+    /// The greatest lane.
+    fn greatest(self) -> f32;
+    /// [`Leaves::intersect_packet`] or [`Leaves::intersect_bundle`].
+    fn test<const ANY: bool, L: Leaves>(
+        leaves: &L,
+        leaf: (u32, u32),
+        rays: (&RayLanes<Self>, Self::Mask),
+        hit: &mut HitLanes<Self>,
+    );
+}
+
+impl Packet for f32x8 {
+    #[inline(always)]
+    fn least(self) -> f32 {
+        self.reduce_min()
+    }
+    #[inline(always)]
+    fn greatest(self) -> f32 {
+        self.reduce_max()
+    }
+    #[inline(always)]
+    fn test<const ANY: bool, L: Leaves>(
+        leaves: &L,
+        (first, count): (u32, u32),
+        (ray, active): (&RayLanes<Self>, Mask8),
+        hit: &mut HitLanes<Self>,
+    ) {
+        leaves.intersect_packet::<ANY>(first, count, ray, active, hit);
+    }
+}
+
+impl Packet for f32x16 {
+    #[inline(always)]
+    fn least(self) -> f32 {
+        self.reduce_min()
+    }
+    #[inline(always)]
+    fn greatest(self) -> f32 {
+        self.reduce_max()
+    }
+    #[inline(always)]
+    fn test<const ANY: bool, L: Leaves>(
+        leaves: &L,
+        (first, count): (u32, u32),
+        (ray, active): (&RayLanes<Self>, Mask16),
+        hit: &mut HitLanes<Self>,
+    ) {
+        leaves.intersect_bundle::<ANY>(first, count, ray, active, hit);
+    }
+}
 
 impl Bvh {
     /// Traces the `active` rays of a packet; `hit` holds their limits in `t` and receives what is found.
@@ -22,18 +77,17 @@ impl Bvh {
         traversal: &mut Traversal<T>,
     ) {
         if let Some(root) = self.nodes.first() {
-            let ray = ray.within(self.reach());
-            self.intersect_packet_from::<ANY, L, T>(root, leaves, (&ray, active), hit, traversal);
+            self.intersect_packet_from::<ANY, f32x8, L, T>(root, leaves, (ray, active), hit, traversal);
         }
     }
 
     /// The same from a node on, the root or an [entry](Bvh::entry). Returns what it cost.
-    pub(super) fn intersect_packet_from<const ANY: bool, L: Leaves, T: Tally>(
+    pub(super) fn intersect_packet_from<const ANY: bool, R: Packet, L: Leaves, T: Tally>(
         &self,
         start: &Node,
         leaves: &L,
-        (ray, active): (&Rayx8, Mask8),
-        hit: &mut Hitx8,
+        (ray, active): (&RayLanes<R>, R::Mask),
+        hit: &mut HitLanes<R>,
         traversal: &mut Traversal<T>,
     ) -> Cost {
         let mut cost = Cost::PACKET;
@@ -42,12 +96,12 @@ impl Bvh {
         }
         let waiting = hit.t;
         // No box is entered before −∞: lanes without work fail every comparison by themselves.
-        hit.t = f32x8::select(active, hit.t, f32x8::splat(f32::NEG_INFINITY));
+        hit.t = R::select(active, hit.t, R::splat(f32::NEG_INFINITY));
         let beam = Beam::of_packet(ray, active);
         let Traversal { stack, blocker, tally } = traversal;
         let mut top = 0;
         let mut node = start;
-        let mut farthest = hit.t.reduce_max();
+        let mut farthest = hit.t.greatest();
         loop {
             tally.node(active.count());
             let below = &mut stack[top..];
@@ -60,7 +114,7 @@ impl Bvh {
             // Leaves, until there is a node again.
             node = loop {
                 if top == 0 {
-                    hit.t = f32x8::select(active, hit.t, waiting);
+                    hit.t = R::select(active, hit.t, waiting);
                     return cost;
                 }
                 top -= 1;
@@ -74,9 +128,9 @@ impl Bvh {
                     Kind::Leaf { first, count } => {
                         tally.leaf(count, active.count());
                         cost += Cost::PACKET_TEST * count;
-                        leaves.intersect_packet::<ANY>(first, count, ray, active, hit);
+                        R::test::<ANY, L>(leaves, (first, count), (ray, active), hit);
                         let before = farthest;
-                        farthest = hit.t.reduce_max();
+                        farthest = hit.t.greatest();
                         if ANY && farthest < before {
                             *blocker = child;
                         }
@@ -92,11 +146,11 @@ impl Bvh {
 
 /// Pushes the children that some ray enters, nearest last, and returns how many.
 #[inline]
-fn enter_together(
+fn enter_together<R: Packet>(
     node: &Node,
-    ray: &Rayx8,
+    ray: &RayLanes<R>,
     beam: &Beam,
-    t_far: f32x8,
+    t_far: R,
     farthest: f32,
     stack: &mut [(Child, f32)],
 ) -> usize {
@@ -116,7 +170,7 @@ fn enter_together(
 
 /// The same for rays that point anywhere.
 #[inline]
-fn enter_apart(node: &Node, ray: &Rayx8, t_far: f32x8, stack: &mut [(Child, f32)]) -> usize {
+fn enter_apart<R: Packet>(node: &Node, ray: &RayLanes<R>, t_far: R, stack: &mut [(Child, f32)]) -> usize {
     let mut count = 0;
     for place in 0..8 {
         if node.children[place] == Child::ABSENT {
@@ -130,7 +184,7 @@ fn enter_apart(node: &Node, ray: &Rayx8, t_far: f32x8, stack: &mut [(Child, f32)
         );
         let enters = low.le(high);
         if enters.any() {
-            let first = f32x8::select(enters, low, f32x8::splat(f32::INFINITY)).reduce_min();
+            let first = R::select(enters, low, R::splat(f32::INFINITY)).least();
             insert(stack, count, (node.children[place], first));
             count += 1;
         }

@@ -1,11 +1,19 @@
 //! Sixty-four rays that are judged together, and which way they go.
 
-use super::{Bvh, Leaves, Node, Stream, Tally, Way, cost::Cost, entry::Segments, occluder::Occluder};
-use crate::geometry::{Ray, RayLanes, Rayx8};
-use crate::simd::{LANES, Mask, Mask8, Real, Vec3x8, transpose};
+use super::{
+    Bvh, Leaves, Node, Stream, Tally, Way,
+    bundle::{BUNDLE, Grouping},
+    cost::Cost,
+    entry::Segments,
+    occluder::Occluder,
+};
+use crate::geometry::{Ray, RayLanes, Rayx8, Rayx16};
+use crate::simd::{LANES, Mask, Mask16, Real, Vec3x16, f32x8, transpose, u32x8};
 
 /// Packets in a run.
 pub(super) const PACKETS: usize = 8;
+/// Bundles in a run.
+pub(super) const BUNDLES: usize = 4;
 /// Rays in a run.
 pub(super) const RUN: usize = PACKETS * LANES;
 /// Runs up to this [`spread`](Run::spread) may go as tiles.
@@ -20,50 +28,99 @@ const PROBE: u32 = 64;
 /// The same for scattered rays, which packets seldom suit.
 const PROBE_SCATTERED: u32 = 512;
 
-/// Up to sixty-four neighbours.
+/// Up to sixty-four neighbours, in [places](Grouping).
 pub(super) struct Run {
-    /// Place of the first ray in its stream.
+    /// Number of the first ray in its stream.
     pub(super) first: usize,
     len: usize,
-    pub(super) rays: [Rayx8; PACKETS],
-    pub(super) active: [Mask8; PACKETS],
+    grouping: Grouping,
+    pub(super) bundles: [Rayx16; BUNDLES],
+    /// Those that are to be traced: a place is a bit.
+    pub(super) active: u64,
     /// Occlusion rays that are known to be blocked; they are not active.
-    pub(super) blocked: [Mask8; PACKETS],
+    pub(super) blocked: u64,
 }
 
 impl Run {
+    /// Bundles that hold a ray.
+    pub(super) fn bundles(&self) -> usize {
+        self.len.div_ceil(BUNDLE)
+    }
+
     /// Packets that hold a ray.
     pub(super) fn packets(&self) -> usize {
         self.len.div_ceil(LANES)
     }
 
-    /// Which places of the run are in the stream: ray i is bit i.
+    /// The rays of a packet.
+    #[inline]
+    pub(super) fn packet(&self, packet: usize) -> Rayx8 {
+        self.bundles[packet / 2].half(packet % 2)
+    }
+
+    /// The rays of a bundle, and which of them are active.
+    #[inline]
+    pub(super) fn bundle(&self, i: usize) -> (&Rayx16, Mask16) {
+        (&self.bundles[i], Mask16::from_bitmask((self.active >> (i * BUNDLE)) as u32 & 0xffff))
+    }
+
+    /// How many rays there are.
+    pub(super) fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Are all rays there, and to be traced?
+    pub(super) fn is_whole(&self) -> bool {
+        self.active == u64::MAX
+    }
+
+    /// Which ray of the stream is at a place.
+    #[inline]
+    pub(super) fn ray(&self, place: usize) -> usize {
+        self.first + self.grouping.ray(place)
+    }
+
+    /// The same for a packet.
+    #[inline]
+    pub(super) fn numbers(&self, packet: usize) -> u32x8 {
+        let [low, high] = [0, LANES / 2].map(|lane| self.ray(packet * LANES + lane) as u32);
+        u32x8::new([low, low + 1, low + 2, low + 3, high, high + 1, high + 2, high + 3])
+    }
+
+    pub(super) fn grouping(&self) -> Grouping {
+        self.grouping
+    }
+
+    /// May two whole runs be one tile?
+    fn goes_with(&self, other: &Self) -> bool {
+        let octant = |run: &Self| run.bundles[0].rdir.lane(0).to_array().map(|r| r < 0.0);
+        self.is_whole() && other.is_whole() && octant(self) == octant(other)
+    }
+
+    /// Which places hold rays of the stream.
     pub(super) fn there(&self) -> u64 {
         if self.len == 0 { 0 } else { u64::MAX >> (RUN - self.len) }
     }
 
-    /// The rays that are known to be blocked: ray i is bit i.
-    pub(super) fn blocked(&self) -> u64 {
-        let bits = |(i, blocked): (usize, &Mask8)| u64::from(blocked.to_bitmask()) << (i * LANES);
-        self.blocked.iter().enumerate().map(bits).sum()
-    }
-
-    fn load<S: Stream>(&mut self, stream: &S, first: usize, reach: glam::Vec3) {
+    fn load<S: Stream>(&mut self, stream: &S, first: usize, grouping: Grouping) {
         (self.first, self.len) = (first, RUN.min(stream.len() - first));
-        for packet in 0..PACKETS {
-            self.active[packet] = Mask8::splat(false);
-            self.blocked[packet] = Mask8::splat(false);
-            if packet * LANES < self.len {
-                let (rays, active) = stream.packet(first + packet * LANES);
-                (self.rays[packet], self.active[packet]) = (rays.within(reach), active);
-            }
+        self.grouping = if self.len == RUN { grouping } else { Grouping::Rows };
+        (self.active, self.blocked) = (0, 0);
+        for packet in 0..self.packets() {
+            let number = packet * LANES;
+            let (rays, active) = stream.packet(first + number);
+            self.grouping.put(&rays, number, &mut self.bundles);
+            let active = u64::from(active.to_bitmask());
+            self.active |= (active & 0xf) << self.grouping.place(number)
+                | (active >> 4) << self.grouping.place(number + 4);
         }
     }
 
     /// Where occlusion rays may start; `None` if their segments are not all bounded.
     pub(super) fn entry(&self, bvh: &Bvh) -> Option<Node> {
         let mut segments = Segments::none();
-        for (rays, active) in self.rays.iter().zip(self.active) {
+        for i in 0..self.bundles() {
+            let (rays, active) = self.bundle(i);
             segments.add(rays, active);
         }
         segments.bounds(bvh.reach()).map(|bounds| bvh.entry(bounds))
@@ -72,16 +129,26 @@ impl Run {
     /// The diagonal of the box around the directions, in lengths of its middle; `None` if they point into
     /// several octants.
     fn spread(&self) -> Option<f32> {
-        let mut low = Vec3x8::splat(glam::Vec3::INFINITY);
-        let mut high = Vec3x8::splat(glam::Vec3::NEG_INFINITY);
-        for (rays, &active) in self.rays.iter().zip(&self.active) {
-            if active.all() {
+        let (mut low, mut high) =
+            (Vec3x16::splat(glam::Vec3::INFINITY), Vec3x16::splat(glam::Vec3::NEG_INFINITY));
+        if self.is_whole() {
+            for rays in &self.bundles {
                 (low, high) = (rays.dir.min(low), rays.dir.max(high));
-            } else {
-                low = Vec3x8::select(active, rays.dir.min(low), low);
-                high = Vec3x8::select(active, rays.dir.max(high), high);
+            }
+        } else {
+            for (i, rays) in self.bundles.iter().enumerate() {
+                let active = Mask16::from_bitmask((self.active >> (i * BUNDLE)) as u32 & 0xffff);
+                low = Vec3x16::select(active, rays.dir.min(low), low);
+                high = Vec3x16::select(active, rays.dir.max(high), high);
             }
         }
+        let fold = |v: Vec3x16, of: fn(f32x8, f32x8) -> f32x8| {
+            v.each(|v| {
+                let [one, other] = v.halves();
+                of(one, other)
+            })
+        };
+        let (low, high) = (fold(low, Real::min), fold(high, Real::max));
         // Six minima over lanes by one transposition.
         let [low, high] = [low, -high].map(|v| [v.x, v.y, v.z]);
         let rows = transpose([low[0], low[1], low[2], low[2], high[0], high[1], high[2], high[2]]);
@@ -100,16 +167,19 @@ impl Run {
 
 /// The runs of a stream, one after the other, and what has been learnt from those before.
 pub(super) struct Runs {
-    run: Box<Run>,
+    /// The run that is looked at, and the one after it.
+    run: Box<[Run; 2]>,
     next: usize,
+    /// What would have suited the last run.
+    grouping: Grouping,
     forced: Way,
-    /// The way of the run that is loaded and has not been taken.
-    waiting: Option<Way>,
-    /// Does it point into one octant and spread little?
-    bundle: bool,
+    /// The ways of those that are loaded and have not been taken.
+    waiting: [Option<Way>; 2],
+    /// Do they point into one octant and spread little?
+    coherent: [bool; 2],
     /// Is the tree one that scattered rays had better go through alone?
     far: bool,
-    /// What has been learnt from closest hits and from occlusion, of scattered rays and of bundles.
+    /// What has been learnt from closest hits and from occlusion, of scattered rays and of coherent ones.
     habits: [[Habit; 2]; 2],
     pub(super) occluder: Occluder,
 }
@@ -143,14 +213,15 @@ fn blend(lately: &mut f32, now: f32) {
 impl Default for Runs {
     fn default() -> Self {
         let nothing = RayLanes::splat(&Ray::new(glam::Vec3::ZERO, glam::Vec3::ONE, 0.0, -1.0));
-        let (rays, active) = ([nothing; PACKETS], [Mask8::splat(false); PACKETS]);
-        let run = Box::new(Run { first: 0, len: 0, rays, active, blocked: active });
+        let (bundles, grouping) = ([nothing; BUNDLES], Grouping::Rows);
+        let run = || Run { first: 0, len: 0, grouping, bundles, active: 0, blocked: 0 };
         Self {
-            run,
+            run: Box::new([run(), run()]),
             next: 0,
+            grouping: Grouping::Rows,
             forced: Way::Chosen,
-            waiting: None,
-            bundle: false,
+            waiting: [None; 2],
+            coherent: [false; 2],
             far: false,
             habits: [[Habit::default(); 2]; 2],
             occluder: Occluder::default(),
@@ -161,45 +232,85 @@ impl Default for Runs {
 impl Runs {
     /// Begins a stream.
     pub(super) fn start(&mut self, way: Way, far: bool) {
-        (self.next, self.forced, self.waiting, self.far) = (0, way, None, far);
+        (self.next, self.forced, self.waiting, self.far) = (0, way, [None; 2], far);
         self.occluder.forget();
     }
 
     /// The way that the next run goes; `None` at the end of the stream.
     pub(super) fn peek<const ANY: bool, L: Leaves, S: Stream, T: Tally>(
         &mut self,
-        bvh: &Bvh,
         leaves: &L,
         stream: &S,
         tally: &mut T,
     ) -> Option<Way> {
-        if self.waiting.is_none() && self.next < stream.len() {
-            self.run.load(stream, self.next, bvh.reach());
-            self.next += self.run.len;
-            if ANY {
-                self.occluder.block(&mut self.run, leaves, tally);
+        if self.waiting[0].is_none() {
+            if self.waiting[1].is_some() {
+                self.run.swap(0, 1);
+                self.waiting.swap(0, 1);
+                self.coherent.swap(0, 1);
+            } else {
+                self.load::<ANY, L, S, T>(0, leaves, stream, tally);
             }
-            self.waiting = Some(if self.forced == Way::Chosen { self.choose::<ANY>() } else { self.forced });
         }
-        self.waiting
+        self.waiting[0]
+    }
+
+    fn load<const ANY: bool, L: Leaves, S: Stream, T: Tally>(
+        &mut self,
+        which: usize,
+        leaves: &L,
+        stream: &S,
+        tally: &mut T,
+    ) {
+        if self.next >= stream.len() {
+            return;
+        }
+        let run = &mut self.run[which];
+        run.load(stream, self.next, self.grouping);
+        self.next += run.len;
+        if run.len == RUN {
+            self.grouping = run.grouping.better(&run.bundles);
+        }
+        if ANY {
+            self.occluder.block(run, leaves, tally);
+        }
+        self.waiting[which] =
+            Some(if self.forced == Way::Chosen { self.choose::<ANY>(which) } else { self.forced });
     }
 
     /// The run that was looked at.
     pub(super) fn take(&mut self) -> &Run {
-        self.waiting = None;
-        &self.run
+        self.waiting[0] = None;
+        &self.run[0]
     }
 
-    /// The kind of the run that was looked at: bit 0 if it is scattered, bit 1 if it is a bundle.
+    /// The run that was looked at and goes as a tile, and the one after it if that goes with it.
+    pub(super) fn take_tile<const ANY: bool, L: Leaves, S: Stream, T: Tally>(
+        &mut self,
+        leaves: &L,
+        stream: &S,
+        tally: &mut T,
+    ) -> &[Run] {
+        self.waiting[0] = None;
+        self.load::<ANY, L, S, T>(1, leaves, stream, tally);
+        let [one, other] = &*self.run;
+        let together = self.waiting[1] == Some(Way::Tile) && one.goes_with(other);
+        if together {
+            self.waiting[1] = None;
+        }
+        &self.run[..1 + usize::from(together)]
+    }
+
+    /// The kind of the run that was looked at: bit 0 if it is scattered, bit 1 if it is coherent.
     pub(super) fn kind(&self) -> u32 {
-        1 << u32::from(self.bundle)
+        1 << u32::from(self.coherent[0])
     }
 
     /// Remembers what the run that was taken cost as a tile or as packets.
-    pub(super) fn learn_together<const ANY: bool>(&mut self, cost: Cost) {
-        let habit = &mut self.habits[usize::from(ANY)][usize::from(self.bundle)];
-        let cost = if self.bundle { cost } else { cost * Cost::FAR };
-        blend(&mut habit.together, cost.0 / self.run.len as f32);
+    pub(super) fn learn_together<const ANY: bool>(&mut self, cost: Cost, rays: usize) {
+        let habit = &mut self.habits[usize::from(ANY)][usize::from(self.coherent[0])];
+        let cost = if self.coherent[0] { cost } else { cost * Cost::FAR };
+        blend(&mut habit.together, cost.0 / rays as f32);
     }
 
     /// Remembers what rays of some kinds cost in a wave.
@@ -211,16 +322,17 @@ impl Runs {
         }
     }
 
-    fn choose<const ANY: bool>(&mut self) -> Way {
+    fn choose<const ANY: bool>(&mut self, which: usize) -> Way {
         let limit = if ANY { PACKET_SPREAD } else { TILE_SPREAD };
-        self.bundle = self.run.spread().is_some_and(|spread| spread <= limit);
-        if !self.bundle && self.far {
+        let coherent = self.run[which].spread().is_some_and(|spread| spread <= limit);
+        self.coherent[which] = coherent;
+        if !coherent && self.far {
             return Way::Wave;
         }
-        let probe = if self.bundle { PROBE } else { PROBE_SCATTERED };
-        if !self.habits[usize::from(ANY)][usize::from(self.bundle)].choose_together(probe) {
+        let probe = if coherent { PROBE } else { PROBE_SCATTERED };
+        if !self.habits[usize::from(ANY)][usize::from(coherent)].choose_together(probe) {
             Way::Wave
-        } else if self.bundle && !ANY {
+        } else if coherent && !ANY {
             Way::Tile
         } else {
             Way::Packet

@@ -6,12 +6,13 @@
 //! depend on the way.
 
 use super::{
-    Bvh, Child, Hitx8, Leaves, Tally, Traversal, Wave,
+    Bvh, Child, Hitx16, Leaves, Tally, Traversal, Wave,
+    bundle::BUNDLE,
     cost::Cost,
-    run::{PACKETS, Run, Runs},
+    run::{BUNDLES, RUN, Run, Runs},
 };
 use crate::geometry::{Hit, Rayx8};
-use crate::simd::{LANES, Mask, Mask8, Real, f32x8};
+use crate::simd::{LANES, Mask, Mask8, Real, f32x16};
 
 /// Rays to be traced, and where their answers go.
 pub trait Stream {
@@ -21,10 +22,19 @@ pub trait Stream {
     fn packet(&self, first: usize) -> (Rayx8, Mask8);
     /// Takes an answer: [`Hit::MISS`], a hit, or for an occlusion query [`Hit::BLOCKED`].
     fn answer(&mut self, index: usize, hit: &Hit);
-    /// Takes the answers of up to eight neighbours.
+    /// Takes the answers of eight neighbours.
     #[inline]
-    fn answer_packet(&mut self, first: usize, hits: &[Hit]) {
+    fn answer_packet(&mut self, first: usize, hits: [Hit; LANES]) {
         hits.iter().enumerate().for_each(|(i, hit)| self.answer(first + i, hit));
+    }
+
+    /// Takes the answers of an occlusion query for up to 64 neighbours: the i-th is blocked if bit i says so.
+    #[inline]
+    fn answer_blocked(&mut self, first: usize, count: usize, blocked: u64) {
+        for i in 0..count {
+            let hit = if blocked >> i & 1 != 0 { Hit::BLOCKED } else { Hit::MISS };
+            self.answer(first + i, &hit);
+        }
     }
 
     /// Is there nothing to trace?
@@ -48,14 +58,17 @@ impl<T> Tracer<T> {
     }
 }
 
+/// Bundles in a tile: those of two runs.
+pub(super) const TILE: usize = 2 * BUNDLES;
+
 /// How to go through the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
     /// Whatever suits the rays.
     Chosen,
-    /// Tiles of sixty-four, as packets where they point into several octants.
+    /// Tiles of up to 128, as packets where they point into several octants.
     Tile,
-    /// Packets of eight.
+    /// Packets of sixteen.
     Packet,
     /// Sixteen single rays in turn.
     Wave,
@@ -74,7 +87,7 @@ impl Bvh {
         runs.start(way, self.is_far());
         // Leaves are those of one tree, and a tracer may go from one to the next.
         traversal.blocker = Child::ABSENT;
-        while let Some(way) = runs.peek::<ANY, L, S, T>(self, leaves, stream, &mut traversal.tally) {
+        while let Some(way) = runs.peek::<ANY, L, S, T>(leaves, stream, &mut traversal.tally) {
             match way {
                 // Runs that follow each other are one wave, which is filled and drained once.
                 Way::Wave => {
@@ -83,36 +96,53 @@ impl Bvh {
                 Way::Packet => {
                     let cost = self.packets::<ANY, L, S, T>(leaves, stream, runs.take(), traversal);
                     runs.occluder.remember(traversal.blocker);
-                    runs.learn_together::<ANY>(cost);
+                    runs.learn_together::<ANY>(cost, RUN);
                 }
                 Way::Chosen | Way::Tile => {
-                    let run = runs.take();
-                    let cost = match self.tile::<ANY, L, S, T>(leaves, stream, run, traversal) {
+                    let tally = &mut traversal.tally;
+                    let tile = runs.take_tile::<ANY, L, S, T>(leaves, stream, tally);
+                    let rays = tile.iter().map(Run::len).sum();
+                    let cost = match self.tile::<ANY, L, S, T>(leaves, stream, tile, traversal) {
                         Some(cost) => cost,
-                        None => self.packets::<ANY, L, S, T>(leaves, stream, run, traversal),
+                        None => tile.iter().fold(Cost::default(), |cost, run| {
+                            cost + self.packets::<ANY, L, S, T>(leaves, stream, run, traversal)
+                        }),
                     };
-                    runs.learn_together::<ANY>(cost);
+                    runs.learn_together::<ANY>(cost, rays);
                 }
             }
         }
     }
 
-    /// Traces a run as a tile if it is whole and points into one octant.
+    /// Traces one or two runs as a tile if they are whole and point into one octant.
     fn tile<const ANY: bool, L: Leaves, S: Stream, T: Tally>(
         &self,
         leaves: &L,
         stream: &mut S,
-        run: &Run,
+        runs: &[Run],
         traversal: &mut Traversal<T>,
     ) -> Option<Cost> {
-        if !run.active.iter().all(|active| active.all()) {
+        if !runs.iter().all(Run::is_whole) {
             return None;
         }
-        let mut hits = [Hitx8::nothing(f32x8::zero()); PACKETS];
-        hits.iter_mut().zip(&run.rays).for_each(|(hit, ray)| hit.t = ray.t_far);
-        let cost = self.intersect_tile::<ANY, L, T>(leaves, &run.rays, &mut hits, traversal)?;
-        for (i, hit) in hits.iter().enumerate() {
-            answer::<ANY, S>(stream, run.first + i * LANES, Mask8::splat(true), hit);
+        let bundle = |i: usize| runs.get(i / BUNDLES).map(|run| &run.bundles[i % BUNDLES]);
+        let rays = std::array::from_fn(|i| bundle(i).unwrap_or(&runs[0].bundles[0]));
+        // Nothing is hit before −∞, where there is no ray.
+        let limit = |i: usize| bundle(i).map_or(f32x16::splat(f32::NEG_INFINITY), |rays| rays.t_far);
+        let mut hits = std::array::from_fn(|i| Hitx16::nothing(limit(i)));
+        let cost = self.intersect_tile::<ANY, L, T>(leaves, &rays, &mut hits, traversal)?;
+        for (run, hits) in runs.iter().zip(hits.chunks(BUNDLES)) {
+            if ANY {
+                let bits =
+                    |hit: &Hitx16| u64::from(hit.t.equal(f32x16::splat(f32::NEG_INFINITY)).to_bitmask());
+                let blocked = hits.iter().rev().fold(0, |blocked, hit| blocked << BUNDLE | bits(hit));
+                stream.answer_blocked(run.first, RUN, run.grouping().in_order(blocked));
+                continue;
+            }
+            for first in (0..RUN).step_by(LANES) {
+                let hits = run.grouping().hits(first, hits).or_miss(Mask8::splat(true)).to_hits();
+                stream.answer_packet(run.first + first, hits);
+            }
         }
         Some(cost)
     }
@@ -128,35 +158,41 @@ impl Bvh {
         let mut cost = Cost::default();
         let entry = if ANY { run.entry(self) } else { None };
         let start = entry.as_ref().or(self.nodes.first());
-        for (i, (ray, &active)) in run.rays.iter().zip(&run.active).enumerate().take(run.packets()) {
-            let mut hit = Hitx8::nothing(ray.t_far);
+        let mut blocked = run.blocked;
+        let mut hits = [Hitx16::nothing(f32x16::zero()); BUNDLES];
+        for (i, hit) in hits.iter_mut().enumerate().take(run.bundles()) {
+            let (ray, active) = run.bundle(i);
+            hit.t = ray.t_far;
             if let Some(start) = start {
-                cost += self.intersect_packet_from::<ANY, L, T>(
-                    start,
-                    leaves,
-                    (ray, active),
-                    &mut hit,
-                    traversal,
-                );
+                let rays = (ray, active);
+                cost += self.intersect_packet_from::<ANY, f32x16, L, T>(start, leaves, rays, hit, traversal);
             }
             if ANY {
-                hit.t = f32x8::select(run.blocked[i], f32x8::splat(f32::NEG_INFINITY), hit.t);
+                let bits = (hit.t.equal(f32x16::splat(f32::NEG_INFINITY)) & active).to_bitmask();
+                blocked |= u64::from(bits) << (i * BUNDLE);
             }
-            answer::<ANY, S>(stream, run.first + i * LANES, active | run.blocked[i], &hit);
+        }
+        if ANY {
+            stream.answer_blocked(run.first, run.len(), run.grouping().in_order(blocked));
+        } else {
+            let active = run.grouping().in_order(run.active);
+            for first in (0..run.len()).step_by(LANES) {
+                let active = Mask8::from_bitmask((active >> first) as u32 & 0xff);
+                let hits = run.grouping().hits(first, &hits).or_miss(active).to_hits();
+                if run.len() - first >= LANES {
+                    stream.answer_packet(run.first + first, hits);
+                } else {
+                    some(stream, run.first + first, &hits[..run.len() - first]);
+                }
+            }
         }
         if self.is_far() { cost * Cost::FAR } else { cost }
     }
 }
 
-/// Hands a packet's hits to its rays.
-#[inline]
-fn answer<const ANY: bool, S: Stream>(stream: &mut S, first: usize, active: Mask8, hit: &Hitx8) {
-    let lanes = (stream.len() - first).min(LANES);
-    let hits: [Hit; LANES] = if ANY {
-        let blocked = (hit.t.equal(f32x8::splat(f32::NEG_INFINITY)) & active).to_bitmask();
-        std::array::from_fn(|lane| if blocked >> lane & 1 != 0 { Hit::BLOCKED } else { Hit::MISS })
-    } else {
-        hit.or_miss(active).to_hits()
-    };
-    stream.answer_packet(first, &hits[..lanes]);
+/// Hands hits to the last rays of a stream.
+#[cold]
+#[inline(never)]
+fn some<S: Stream>(stream: &mut S, first: usize, hits: &[Hit]) {
+    hits.iter().enumerate().for_each(|(i, hit)| stream.answer(first + i, hit));
 }

@@ -1,16 +1,19 @@
-//! Sixty-four rays through the tree together: eight packets into one octant.
+//! A hundred and twenty-eight rays through the tree together: eight bundles into one octant.
 //!
 //! A node is tested by the bounds of all rays against its eight boxes (lanes are boxes), then by the bounds
-//! of the eight packets against each box that is left (lanes are packets). At a leaf, the planes through a
-//! triangle's edges and the common origin cull packets, and the kernel decides about the others. A step that
-//! a packet would take eight times is so taken once.
+//! of the eight bundles against each box that is left (lanes are bundles). At a leaf, the planes through a
+//! triangle's edges and the common origin cull bundles, and the kernel decides about the others. A step that
+//! a bundle would take eight times is so taken once.
 
-use super::{Bvh, Child, Hitx8, Kind, Leaves, Node, Tally, Traversal, beam::Beam, cost::Cost, run::PACKETS};
-use crate::geometry::Rayx8;
+use super::{
+    Bvh, Child, Hitx16, Kind, Leaves, Node, Tally, Traversal, beam::Beam, bundle::BUNDLE, cost::Cost,
+    stream::TILE,
+};
+use crate::geometry::Rayx16;
 use crate::simd::{Mask, Real, f32x8};
 
-/// Up to so many packets, each tests a leaf's box with its rays.
-const FEW: u32 = 3;
+/// Up to so many bundles, each tests a leaf's box with its rays.
+const FEW: u32 = 4;
 
 impl Bvh {
     /// Traces a tile; `hits` as for [`Bvh::intersect_packet`]. Returns what it cost; `None`, and it has done
@@ -18,11 +21,11 @@ impl Bvh {
     pub(super) fn intersect_tile<const ANY: bool, L: Leaves, T: Tally>(
         &self,
         leaves: &L,
-        packets: &[Rayx8; PACKETS],
-        hits: &mut [Hitx8; PACKETS],
+        rays: &[&Rayx16; TILE],
+        hits: &mut [Hitx16; TILE],
         traversal: &mut Traversal<T>,
     ) -> Option<Cost> {
-        let beams = Beam::of_packets(packets)?;
+        let beams = Beam::of_bundles(rays)?;
         let mut cost = Cost::TILE;
         if self.nodes.is_empty() {
             return Some(cost);
@@ -46,7 +49,7 @@ impl Bvh {
                 Kind::Absent => {}
                 Kind::Inner(index) => {
                     let node = &self.nodes[index as usize];
-                    (0..mask.count_ones()).for_each(|_| tally.node(8));
+                    (0..mask.count_ones()).for_each(|_| tally.node(BUNDLE as u32));
                     let (candidates, enters) = all.children(node, end);
                     let enters = enters.to_array();
                     let mut candidates = candidates.to_bitmask();
@@ -57,9 +60,9 @@ impl Bvh {
                         candidates &= candidates - 1;
                         let mut mask = mask & beams.beams(node, place, farthest).to_bitmask();
                         let child = node.children[place];
-                        // Planes are tested once for all packets: no box is worth it for more than a few.
+                        // Planes are tested once for all bundles: no box is worth it for more than a few.
                         if child.is_leaf() && (pencils.is_none() || mask.count_ones() <= FEW) {
-                            mask = rays_enter(node, place, &beams, packets, hits, mask);
+                            mask = rays_enter(node, place, &beams, rays, hits, mask);
                         }
                         if mask != 0 {
                             self.ask_for(child, leaves);
@@ -75,12 +78,12 @@ impl Bvh {
                 }
                 Kind::Leaf { first, count } => {
                     let pencils = pencils.as_ref();
-                    let tests = leaves.intersect_tile::<ANY>((first, count), packets, pencils, mask, hits);
-                    tally.leaf(tests, 8);
+                    let tests = leaves.intersect_tile::<ANY>((first, count), rays, pencils, mask, hits);
+                    tally.leaf(tests, BUNDLE as u32);
                     cost += Cost::TILE_LEAF + Cost::TILE_PLANES * count + Cost::PACKET_TEST * tests;
                     let mut limits = farthest.to_array();
-                    for packet in (0..PACKETS).filter(|packet| mask >> packet & 1 != 0) {
-                        limits[packet] = hits[packet].t.reduce_max();
+                    for bundle in (0..TILE).filter(|bundle| mask >> bundle & 1 != 0) {
+                        limits[bundle] = hits[bundle].t.reduce_max();
                     }
                     farthest = f32x8::from(limits);
                     end = farthest.reduce_max();
@@ -94,23 +97,23 @@ impl Bvh {
     }
 }
 
-/// Which of the packets in `mask` have a ray that enters a child's box.
+/// Which of the bundles in `mask` have a ray that enters a child's box.
 #[inline]
 fn rays_enter(
     node: &Node,
     place: usize,
     beams: &Beam,
-    packets: &[Rayx8; PACKETS],
-    hits: &[Hitx8; PACKETS],
+    rays: &[&Rayx16; TILE],
+    hits: &[Hitx16; TILE],
     mask: u32,
 ) -> u32 {
     let mut entered = 0;
     let mut left = mask;
     while left != 0 {
-        let packet = left.trailing_zeros() as usize;
+        let bundle = left.trailing_zeros() as usize;
         left &= left - 1;
-        let rays = beams.rays(node, place, &packets[packet], hits[packet].t);
-        entered |= u32::from(rays.any()) << packet;
+        let enter = beams.rays(node, place, rays[bundle], hits[bundle].t);
+        entered |= u32::from(enter.any()) << bundle;
     }
     entered
 }

@@ -9,7 +9,7 @@ use crate::{bvh::Way, render::Route};
 pub(super) enum WayName {
     /// Whatever suits each 64 rays
     Chosen,
-    /// Tiles of 64 rays from one point into one octant; others as packets
+    /// Tiles of up to 128 rays from one point into one octant; others as packets
     Tile,
     /// Packets of 8
     Packet,

@@ -190,7 +190,9 @@ impl Instances {
         let blocked = inside.t.equal(f32x8::splat(f32::NEG_INFINITY));
         let found = entered.lanes & if ANY { blocked } else { !inside.primitive.equal(none) };
         let what = f32x8::from_bits(inside.primitive);
-        accept::<ANY>(hit, found, (entered.clamp(inside.t), what, f32x8::zero()), || u32x8::splat(number));
+        accept::<ANY, f32x8>(hit, found, (entered.clamp(inside.t), what, f32x8::zero()), || {
+            u32x8::splat(number)
+        });
     }
 
     /// One ray against `count` instances, by the kernels of eight lanes.

@@ -1,17 +1,20 @@
 //! What can be hit, in leaf order: eight triangles or spheres to a block, in columns; what is rare, one by
 //! one.
 
+mod accept;
 mod triangle_block;
 
 use rayon::prelude::*;
 
+pub(super) use self::accept::{accept, accept_single};
 use self::triangle_block::{TriangleBlock, row, set};
 use super::instances::Instances;
-use crate::bvh::{BLOCK, Hitx8, Leaves};
+use crate::bvh::{BLOCK, HitLanes, Hitx8, Hitx16, Leaves};
 use crate::geometry::{
-    AspectColumns, Canonical, Hit, Pencils, PrimitiveId, Ray, RayLanes, Rayx8, Sphere, SphereLanes, Triangle,
+    AspectColumns, Canonical, Hit, Pencils, PrimitiveId, Ray, RayLanes, Rayx8, Rayx16, Sphere, SphereLanes,
+    Triangle,
 };
-use crate::simd::{Bits, Mask, Mask8, Real, Vector3, f32x8, u32x8};
+use crate::simd::{Bits, Mask, Mask8, Mask16, Real, Vector3, f32x8, f32x16};
 
 /// Classes of references, in the order of their blocks.
 pub(super) const TRIANGLE: u8 = 0;
@@ -19,8 +22,8 @@ pub(super) const SPHERE: u8 = 1;
 pub(super) const CANONICAL: u8 = 2;
 pub(super) const INSTANCE: u8 = 3;
 
-/// For up to so many packets of a tile, the planes of a block's triangles cost more than they spare.
-const FEW: u32 = 2;
+/// For up to so many bundles of a tile, the planes of a block's triangles cost more than they spare.
+const FEW: u32 = 3;
 
 /// Something that can be hit.
 #[derive(Clone, Copy, Debug)]
@@ -142,6 +145,66 @@ impl Primitives {
         hit
     }
 
+    /// A block of triangles of which one has an edge next to the ray.
+    #[cold]
+    #[inline(never)]
+    fn intersect_carefully<const ANY: bool>(&self, first: u32, ray: Rayx8, mut hit: Hit) -> Hit {
+        let block = first as usize / BLOCK;
+        let ray = RayLanes { t_far: f32x8::splat(hit.t), ..ray };
+        let (found, t, u, v) = self.triangles[block].lanes().intersect(&ray, Mask8::splat(true));
+        for lane in (0..BLOCK).filter(|&lane| found.lane(lane)) {
+            let id = self.triangle_ids[block * BLOCK + lane];
+            accept_single::<ANY>(&mut hit, (t.lane(lane), u.lane(lane), v.lane(lane)), id);
+        }
+        hit
+    }
+
+    /// Rays in lanes against the primitives of a leaf; `instance` tests the one in a slot.
+    #[inline(always)]
+    fn intersect_lanes<const ANY: bool, R: Real>(
+        &self,
+        first: u32,
+        count: u32,
+        ray: &RayLanes<R>,
+        active: R::Mask,
+        hit: &mut HitLanes<R>,
+        instance: impl Fn(usize, &mut HitLanes<R>),
+    ) {
+        let (class, block, lane) = self.place(first);
+        for lane in lane..lane + count as usize {
+            let limited = RayLanes { t_far: hit.t, ..*ray };
+            let zero = R::zero();
+            match class {
+                TRIANGLE => {
+                    let id = &self.triangle_ids[block * BLOCK + lane];
+                    let block = &self.triangles[block];
+                    let triangle = block.splat(lane);
+                    let (aspect, margin) = {
+                        let aspect = triangle.aspect(ray.org);
+                        (aspect, aspect.margin(triangle.edges, ray.margin))
+                    };
+                    block.intersect::<ANY, R>((lane, id), (&aspect, margin), ray, active, hit);
+                }
+                SPHERE => {
+                    let block = &self.spheres[block];
+                    let sphere = SphereLanes {
+                        center: Vector3::splat(row(&block.center, lane)),
+                        radius: R::splat(block.radius[lane]),
+                    };
+                    let (found, t) = sphere.intersect(&limited, active);
+                    accept::<ANY, R>(hit, found, (t, zero, zero), || R::Bits::splat(block.id[lane]));
+                }
+                CANONICAL => {
+                    if let Some((surface, id)) = &self.canonicals[block * BLOCK + lane] {
+                        let (found, t) = surface.intersect(&limited, active);
+                        accept::<ANY, R>(hit, found, (t, zero, zero), || R::Bits::splat(*id));
+                    }
+                }
+                _ => instance(block * BLOCK + lane, hit),
+            }
+        }
+    }
+
     /// A slot's block: which class, which block of the class, and the first lane.
     #[inline]
     fn place(&self, slot: u32) -> (u8, usize, usize) {
@@ -161,43 +224,6 @@ impl Primitives {
     }
 }
 
-/// Records hits, where they are closer or tie with a higher id: of a packet with one primitive, or of one
-/// ray with several.
-#[inline]
-pub(super) fn accept<const ANY: bool>(
-    hit: &mut Hitx8,
-    found: Mask8,
-    (t, u, v): (f32x8, f32x8, f32x8),
-    id: impl FnOnce() -> u32x8,
-) {
-    if ANY {
-        hit.t = f32x8::select(found, f32x8::splat(f32::NEG_INFINITY), hit.t);
-        return;
-    }
-    let id = id();
-    let mut closer = found & t.lt(hit.t);
-    let tie = found & t.equal(hit.t);
-    if tie.any() {
-        let (id, other) = (id.to_array(), hit.primitive.to_array());
-        closer = closer | (tie & Mask8::from_array(std::array::from_fn(|i| id[i] < other[i])));
-    }
-    hit.t = f32x8::select(closer, t, hit.t);
-    hit.u = f32x8::select(closer, u, hit.u);
-    hit.v = f32x8::select(closer, v, hit.v);
-    hit.primitive = u32x8::select(closer, id, hit.primitive);
-}
-
-/// Records a ray's hit in the same way.
-#[inline]
-pub(super) fn accept_single<const ANY: bool>(hit: &mut Hit, (t, u, v): (f32, f32, f32), id: u32) {
-    let found = Hit { t, u, v, primitive: PrimitiveId(id) };
-    if ANY {
-        hit.t = f32::NEG_INFINITY;
-    } else if found.closer_than(hit) {
-        *hit = found;
-    }
-}
-
 impl Leaves for Primitives {
     #[inline]
     fn address(&self, slot: u32) -> *const u8 {
@@ -213,70 +239,66 @@ impl Leaves for Primitives {
         active: Mask8,
         hit: &mut Hitx8,
     ) {
-        let (class, block, lane) = self.place(first);
-        for lane in lane..lane + count as usize {
-            let limited = RayLanes { t_far: hit.t, ..*ray };
-            let zero = f32x8::zero();
-            match class {
-                TRIANGLE => {
-                    let id = &self.triangle_ids[block * BLOCK + lane];
-                    let block = &self.triangles[block];
-                    let aspect = block.splat(lane).aspect(ray.org);
-                    block.intersect::<ANY>((lane, id), &aspect, ray, active, hit);
-                }
-                SPHERE => {
-                    let block = &self.spheres[block];
-                    let sphere = SphereLanes {
-                        center: Vector3::splat(row(&block.center, lane)),
-                        radius: f32x8::splat(block.radius[lane]),
-                    };
-                    let (found, t) = sphere.intersect(&limited, active);
-                    accept::<ANY>(hit, found, (t, zero, zero), || u32x8::splat(block.id[lane]));
-                }
-                CANONICAL => {
-                    if let Some((surface, id)) = &self.canonicals[block * BLOCK + lane] {
-                        let (found, t) = surface.intersect(&limited, active);
-                        accept::<ANY>(hit, found, (t, zero, zero), || u32x8::splat(*id));
-                    }
-                }
-                _ => self.instances.intersect_packet::<ANY>(block * BLOCK + lane, ray, active, hit),
+        self.intersect_lanes::<ANY, f32x8>(first, count, ray, active, hit, |slot, hit| {
+            self.instances.intersect_packet::<ANY>(slot, ray, active, hit);
+        });
+    }
+
+    #[inline]
+    fn intersect_bundle<const ANY: bool>(
+        &self,
+        first: u32,
+        count: u32,
+        ray: &Rayx16,
+        active: Mask16,
+        hit: &mut Hitx16,
+    ) {
+        self.intersect_lanes::<ANY, f32x16>(first, count, ray, active, hit, |slot, hit| {
+            let mut halves = hit.halves();
+            for (half, hit) in halves.iter_mut().enumerate() {
+                let active = Mask8::from_bitmask(active.to_bitmask() >> (half * 8) & 0xff);
+                self.instances.intersect_packet::<ANY>(slot, &ray.half(half), active, hit);
             }
-        }
+            *hit = Hitx16::of_halves(halves);
+        });
     }
 
     fn intersect_tile<const ANY: bool>(
         &self,
         (first, count): (u32, u32),
-        packets: &[Rayx8; 8],
+        rays: &[&Rayx16; 8],
         pencils: Option<&Pencils>,
         mask: u32,
-        hits: &mut [Hitx8; 8],
+        hits: &mut [Hitx16; 8],
     ) -> u32 {
-        let every = Mask8::splat(true);
-        let pencils = pencils.filter(|_| mask.count_ones() > FEW);
+        let every = Mask16::splat(true);
         let (Some(block), Some(pencils)) = (self.triangles.get(first as usize / BLOCK), pencils) else {
-            for packet in (0..8).filter(|packet| mask >> packet & 1 != 0) {
-                self.intersect_packet::<ANY>(first, count, &packets[packet], every, &mut hits[packet]);
+            for bundle in (0..8).filter(|bundle| mask >> bundle & 1 != 0) {
+                self.intersect_bundle::<ANY>(first, count, rays[bundle], every, &mut hits[bundle]);
             }
             return mask.count_ones() * count;
         };
         // From the one origin of all, for all triangles of the block at once.
-        let aspects = block.lanes().aspect(Vector3::splat(pencils.org()));
-        let (planes, aspects) = (aspects.edge_planes(), AspectColumns::new(&aspects));
+        let triangles = block.lanes();
+        let aspects = triangles.aspect(Vector3::splat(pencils.org()));
+        let margins = aspects.margin(triangles.edges, f32x8::splat(pencils.margin())).to_array();
+        let planes = (mask.count_ones() > FEW).then(|| aspects.edge_planes());
+        let aspects = AspectColumns::new(&aspects);
         let (lane, mut tests) = (first as usize % BLOCK, 0);
-        for lane in lane..lane + count as usize {
+        for (lane, &margin) in margins.iter().enumerate().skip(lane).take(count as usize) {
             let id = &self.triangle_ids[first as usize / BLOCK * BLOCK + lane];
-            let mut left = mask & pencils.meet(&planes, lane).to_bitmask();
+            let meet = |planes| pencils.meet(planes, lane).to_bitmask();
+            let mut left = mask & planes.as_ref().map_or(u32::MAX, meet);
             tests += left.count_ones();
             while left != 0 {
-                let packet = left.trailing_zeros() as usize % 8;
+                let bundle = left.trailing_zeros() as usize % 8;
                 left &= left - 1;
-                block.intersect::<ANY>(
+                block.intersect::<ANY, f32x16>(
                     (lane, id),
-                    &aspects.splat(lane),
-                    &packets[packet],
+                    (&aspects.splat(lane), f32x16::splat(margin)),
+                    rays[bundle],
                     every,
-                    &mut hits[packet],
+                    &mut hits[bundle],
                 );
             }
         }
@@ -302,7 +324,13 @@ impl Leaves for Primitives {
             return;
         };
         let ray = RayLanes { t_far: f32x8::splat(hit.t), ..splat() };
-        let (found, t, u, v) = block.lanes().intersect(&ray, Mask8::splat(true));
+        let (lanes, every) = (block.lanes(), Mask8::splat(true));
+        let aspect = lanes.aspect(ray.org);
+        let margin = aspect.margin(lanes.edges, ray.margin);
+        let Some((found, t, u, v)) = lanes.intersect_seen(&aspect, margin, &ray, every) else {
+            *hit = self.intersect_carefully::<ANY>(first, splat(), *hit);
+            return;
+        };
         let mut found = found.to_bitmask();
         while found != 0 {
             let lane = found.trailing_zeros() as usize % 8;

@@ -107,20 +107,27 @@ impl<A: Answer> Stream for Slices<'_, A> {
     }
 
     #[inline]
-    fn answer_packet(&mut self, first: usize, hits: &[Hit]) {
+    fn answer_blocked(&mut self, first: usize, count: usize, blocked: u64) {
+        let out = &mut self.out[first..first + count];
+        let answer = |i: usize| A::of(if blocked >> i & 1 != 0 { &Hit::BLOCKED } else { &Hit::MISS });
+        match out.first_chunk_mut::<64>() {
+            Some(out) => *out = std::array::from_fn(answer),
+            None => out.iter_mut().enumerate().for_each(|(i, out)| *out = answer(i)),
+        }
+    }
+
+    #[inline]
+    fn answer_packet(&mut self, first: usize, [a, b, c, d, e, f, g, h]: [Hit; LANES]) {
         prefetch::<2>(self.out.as_ptr().wrapping_add(first + AHEAD).cast());
-        let out = &mut self.out[first..first + hits.len()];
-        // Eight of them are moved by themselves, any other number by a call.
-        match (out.first_chunk_mut::<LANES>(), hits.first_chunk::<LANES>()) {
-            (Some(out), Some(hits)) => *out = std::array::from_fn(|i| A::of(&hits[i])),
-            _ => out.iter_mut().zip(hits).for_each(|(out, hit)| *out = A::of(hit)),
+        if let Some(out) = self.out[first..].first_chunk_mut() {
+            *out = [A::of(&a), A::of(&b), A::of(&c), A::of(&d), A::of(&e), A::of(&f), A::of(&g), A::of(&h)];
         }
     }
 }
 
 /// Rays ahead of those that are loaded, which memory is asked for: a run of them, by far less than a page,
 /// is over before the processor sees that they come one after the other.
-const AHEAD: usize = 64;
+const AHEAD: usize = 128;
 
 #[cfg(test)]
 mod tests {

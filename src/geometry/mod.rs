@@ -28,7 +28,7 @@ pub use canonical::{Canonical, CanonicalKind};
 pub use offset::{REACH, offset_origin};
 pub use pencil::{EdgePlanes, Pencils};
 pub use placement::{Entered, Placement};
-pub use ray::{Hit, PrimitiveId, Ray, RayLanes, Rayx8};
+pub use ray::{Hit, PrimitiveId, Ray, RayLanes, Rayx8, Rayx16};
 pub use ray_file::Ray32;
 pub use sphere::{Sphere, SphereLanes};
 pub use triangle::{Aspect, AspectColumns, Triangle, TriangleLanes};

@@ -11,7 +11,7 @@
 
 use glam::Vec3;
 
-use super::Aspect;
+use super::{Aspect, triangle::rounding};
 use crate::simd::{LANES, Mask8, Real, Vec3x8, f32x8};
 
 /// Roundings, in ulps of |dir|·(|s|·(|e₁| + |e₂|) + |e₁|·|e₂|): the kernel's products take part with at
@@ -28,6 +28,8 @@ pub struct Pencils {
     radius: Vec3x8,
     /// Greatest |x| + |y| + |z| of a direction.
     length: f32x8,
+    /// What all of them have to do with the margins of triangles.
+    margin: f32,
 }
 
 impl Pencils {
@@ -35,12 +37,20 @@ impl Pencils {
     #[inline]
     pub fn new(org: Vec3, low: Vec3x8, high: Vec3x8) -> Self {
         let half = f32x8::splat(0.5);
+        let greatest = low.abs().max(high.abs());
         Self {
             org,
             middle: (low + high).scale(half),
             radius: (high - low).scale(half),
-            length: low.abs().max(high.abs()).element_sum(),
+            length: greatest.element_sum(),
+            margin: rounding(greatest).reduce_max(),
         }
+    }
+
+    /// The greatest [`margin`](super::RayLanes::margin) of any ray.
+    #[inline]
+    pub fn margin(&self) -> f32 {
+        self.margin
     }
 
     /// The origin.

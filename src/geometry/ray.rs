@@ -1,9 +1,10 @@
 //! Rays and hits.
 
+use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use super::triangle;
-use crate::simd::{Real, Vector3, f32x8};
+use crate::simd::{Real, Vector3, f32x8, f32x16, vector3};
 
 /// A half-open segment org + t·dir, t in (`t_near`, `t_far`], in the space of what it is traced through: the
 /// world, or a group's. `dir` need not be of unit length.
@@ -42,28 +43,22 @@ pub struct RayLanes<R> {
     pub t_near: R,
     /// Included upper ends.
     pub t_far: R,
-    /// Bound on the rounding in tests of triangles, for each unit of their edges; see
-    /// [`RayLanes::within`].
+    /// Bound on the rounding in tests of triangles, for each unit of their size: see
+    /// [`Aspect::margin`](super::Aspect::margin).
     pub margin: R,
 }
 
 /// A packet of eight rays.
 pub type Rayx8 = RayLanes<f32x8>;
 
+/// Two packets side by side.
+pub type Rayx16 = RayLanes<f32x16>;
+
 impl<R: Real> RayLanes<R> {
     /// Rays with their reciprocal directions.
     #[inline]
     pub fn new(org: Vector3<R>, dir: Vector3<R>, t_near: R, t_far: R) -> Self {
-        let margin = R::splat(f32::INFINITY);
-        Self { org, dir, rdir: dir.map(|d| R::one() / d), t_near, t_far, margin }
-    }
-
-    /// The same rays, among triangles whose coordinates are at most `reach` in magnitude. Without knowing
-    /// that, every test is as careful as one next to an edge: the answer is the same, but takes longer.
-    #[inline]
-    #[must_use]
-    pub fn within(&self, reach: Vec3) -> Self {
-        Self { margin: triangle::margin_within(self.org, self.dir, reach), ..*self }
+        Self { org, dir, rdir: dir.map(|d| R::one() / d), t_near, t_far, margin: triangle::rounding(dir) }
     }
 
     /// The same ray in every lane.
@@ -75,7 +70,7 @@ impl<R: Real> RayLanes<R> {
             rdir: Vector3::splat(ray.rdir),
             t_near: R::splat(ray.t_near),
             t_far: R::splat(ray.t_far),
-            margin: R::splat(f32::INFINITY),
+            margin: triangle::rounding(Vector3::splat(ray.dir)),
         }
     }
 
@@ -92,9 +87,42 @@ impl<R: Real> RayLanes<R> {
     }
 }
 
+impl Rayx16 {
+    /// Lanes 4i to 4i + 3 become the lower or the upper half of a packet.
+    #[inline(always)]
+    pub fn put_quarter(&mut self, i: usize, rays: &Rayx8, half: usize) {
+        let put = |to: &mut Vector3<f32x16>, from: &Vector3<f32x8>| {
+            to.x.put_quarter(i, from.x.half(half));
+            to.y.put_quarter(i, from.y.half(half));
+            to.z.put_quarter(i, from.z.half(half));
+        };
+        put(&mut self.org, &rays.org);
+        put(&mut self.dir, &rays.dir);
+        put(&mut self.rdir, &rays.rdir);
+        self.t_near.put_quarter(i, rays.t_near.half(half));
+        self.t_far.put_quarter(i, rays.t_far.half(half));
+        self.margin.put_quarter(i, rays.margin.half(half));
+    }
+
+    /// Lanes 0 to 7 or 8 to 15.
+    #[inline(always)]
+    pub fn half(&self, half: usize) -> Rayx8 {
+        let of = |v: &Vector3<f32x16>| vector3(v.x.half(half), v.y.half(half), v.z.half(half));
+        RayLanes {
+            org: of(&self.org),
+            dir: of(&self.dir),
+            rdir: of(&self.rdir),
+            t_near: self.t_near.half(half),
+            t_far: self.t_far.half(half),
+            margin: self.margin.half(half),
+        }
+    }
+}
+
 /// Which primitive of the scene, in the order of the description: those of its shapes, then its instances, one
 /// number each. The order decides ties.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Pod, Zeroable)]
+#[repr(transparent)]
 pub struct PrimitiveId(pub u32);
 
 impl PrimitiveId {
@@ -103,7 +131,8 @@ impl PrimitiveId {
 }
 
 /// Where a ray met a primitive.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
 pub struct Hit {
     /// Distance along the ray in units of its direction; +∞ for a miss.
     pub t: f32,
@@ -122,6 +151,12 @@ impl Hit {
 
     /// Something, somewhere: the answer of an occlusion query.
     pub const BLOCKED: Self = Self { t: f32::NEG_INFINITY, ..Self::MISS };
+
+    /// From (t, u, v, the primitive's number as bits): what four stores would be is one.
+    #[inline]
+    pub fn of_row(row: [f32; 4]) -> Self {
+        bytemuck::must_cast(row)
+    }
 
     /// The order that makes the answer unique: nearest t, then lowest id.
     #[inline]

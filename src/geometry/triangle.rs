@@ -15,9 +15,9 @@
 //! signs are certain. Within it two neighbours might both say that the ray is on the other's side of their
 //! edge; there, and for hardly any ray, [`crossing`] decides, which can't.
 //!
-//! In lanes, a bound on the margins of all triangles of the scene, known for a ray before it meets any, takes
-//! their place: whoever is beyond it, on either side, is certain. Only for the others are the margins worked
-//! out.
+//! In lanes, a bound on the margins that is cheaper than they are takes their place ([`Aspect::margin`]):
+//! whoever is beyond it, on either side, is certain. Only where a lane is not, the margins are worked out, and
+//! that out of the way ([`TriangleLanes::intersect`]).
 
 use glam::Vec3;
 
@@ -108,12 +108,11 @@ impl Triangle {
     }
 }
 
-/// A bound on the margin of any triangle whose coordinates are at most `reach` in magnitude, for each unit of
-/// its [`edges`](Triangle::edges): no vertex is farther from the origin of the ray than org + reach, no edge
-/// longer than 2·reach. A fifth more, against the rounding of the margins themselves.
+/// What a direction has to do with the margins of triangles. A fifth more than ULPS, against the rounding of
+/// the margins themselves.
 #[inline]
-pub(super) fn margin_within<R: Real>(org: Vector3<R>, dir: Vector3<R>, reach: Vec3) -> R {
-    products(org.abs() + Vector3::splat(reach * 5.0), dir.abs()).max_element() * R::splat(1.2 * ULPS)
+pub(super) fn rounding<R: Real>(dir: Vector3<R>) -> R {
+    dir.abs().element_sum() * R::splat(1.2 * ULPS)
 }
 
 /// aⱼ·bₖ + aₖ·bⱼ for each axis i and the two others.
@@ -166,12 +165,60 @@ impl AspectColumns {
 
     /// One of the lanes, in all lanes.
     #[inline(always)]
-    pub fn splat(&self, lane: usize) -> Aspect<f32x8> {
+    pub fn splat<R: Real>(&self, lane: usize) -> Aspect<R> {
         let [e1, e2, s, q, min, max] = [0, 1, 2, 3, 4, 5].map(|of: usize| {
             let [x, y, z] = &self.0[of];
-            vector3(f32x8::splat(x[lane]), f32x8::splat(y[lane]), f32x8::splat(z[lane]))
+            vector3(R::splat(x[lane]), R::splat(y[lane]), R::splat(z[lane]))
         });
         Aspect { e1, e2, s, q, min, max }
+    }
+}
+
+/// What numerators say.
+struct Tested<R: Real> {
+    /// Not certainly a miss.
+    near: R::Mask,
+    /// Neither a hit nor a miss by rounding.
+    certain: R::Mask,
+    /// The least magnitude of a numerator: negative if not all have one sign.
+    inside: R,
+    t: R,
+    u: R,
+    v: R,
+}
+
+impl<R: Real> Aspect<R> {
+    /// A bound on the margins: a sum of products is at most the product of the sums. `edges` are the triangles',
+    /// `rounding` is the rays' [`margin`](RayLanes::margin).
+    #[inline(always)]
+    pub fn margin(&self, edges: R, rounding: R) -> R {
+        (self.s.abs().element_sum() + edges) * edges * rounding + R::splat(LEAST)
+    }
+
+    #[inline(always)]
+    fn test(&self, margin: R, ray: &RayLanes<R>, active: R::Mask) -> Tested<R> {
+        let Self { e1, e2, s, q, .. } = *self;
+        let p = ray.dir.cross(e2);
+        let det = e1.dot(p);
+        let u = s.dot(p);
+        let v = ray.dir.dot(q);
+        let w = det - u - v;
+        let inside = u.min(v).min(w).max(-u.max(v).max(w));
+        let near = (-margin).le(inside) & active;
+        let certain = margin.lt(inside);
+        let inverse = R::one() / det;
+        // A zero added: rays from +0 and from −0 see the same aspect, and have the same t.
+        let t = e2.dot(q) * inverse + R::zero();
+        Tested { near, certain, inside, t, u: u * inverse, v: v * inverse }
+    }
+
+    /// Hits that lie in the triangles' boxes and in the rays' ranges.
+    #[inline(always)]
+    fn within(&self, ray: &RayLanes<R>, (hit, t, u, v): (R::Mask, R, R, R)) -> (R::Mask, R, R, R) {
+        let all = (R::splat(f32::NEG_INFINITY), R::splat(f32::INFINITY));
+        let (low, high) = aabb::interval((self.min, self.max), (ray.org, ray.rdir), all);
+        let t = high.min(low.max(t));
+        (hit & low.le(high) & ray.t_near.lt(t) & t.le(ray.t_far), t, u, v)
     }
 }
 
@@ -186,52 +233,40 @@ impl<R: Real> TriangleLanes<R> {
     }
 
     /// Eight rays, eight triangles, or eight of each: (hit, t, u, v) of the lanes in `active`.
-    // Always: as a call, rays and triangles would go through memory.
-    #[inline(always)]
+    #[inline(never)]
     pub fn intersect(&self, ray: &RayLanes<R>, active: R::Mask) -> (R::Mask, R, R, R) {
-        self.intersect_seen(&self.aspect(ray.org), ray, active)
+        let aspect = self.aspect(ray.org);
+        let tested = aspect.test(aspect.margin(self.edges, ray.margin), ray, active);
+        let doubtful = tested.near & !tested.certain;
+        let found = (tested.near & tested.certain, tested.t, tested.u, tested.v);
+        let found = if doubtful.any() { self.look_again(ray, doubtful, tested.inside, found) } else { found };
+        aspect.within(ray, found)
     }
 
-    /// [`intersect`](Self::intersect), for rays whose origin the triangles have been seen from.
+    /// The same for rays whose origin the triangles have been seen from; `None`, and [`intersect`](Self::intersect)
+    /// decides, if a lane is so near to an edge that more has to be asked.
+    // Always: as a call, rays and triangles would go through memory. And nothing is called from here: what lives
+    // across a call, however rare, is kept in memory from the start.
     #[inline(always)]
     pub fn intersect_seen(
         &self,
         aspect: &Aspect<R>,
+        margin: R,
         ray: &RayLanes<R>,
         active: R::Mask,
-    ) -> (R::Mask, R, R, R) {
-        let Aspect { e1, e2, s, q, min, max } = *aspect;
-        let p = ray.dir.cross(e2);
-        let det = e1.dot(p);
-        let u = s.dot(p);
-        let v = ray.dir.dot(q);
-        let w = det - u - v;
-        let inside = u.min(v).min(w).max(-u.max(v).max(w));
-        let margin = self.edges * ray.margin + R::splat(LEAST);
-        let near = (-margin).le(inside) & active;
-        if near.none() {
-            return (near, u, u, v);
+    ) -> Option<(R::Mask, R, R, R)> {
+        let tested = aspect.test(margin, ray, active);
+        if tested.near.none() {
+            return Some((tested.near, tested.t, tested.u, tested.v));
         }
-        let certain = margin.lt(inside);
-        let inverse = R::one() / det;
-        // A zero added: rays from +0 and from −0 see the same aspect, and have the same t.
-        let t = e2.dot(q) * inverse + R::zero();
-        let mut found = (near & certain, t, u * inverse, v * inverse);
-        let doubtful = near & !certain;
-        if doubtful.any() {
-            // Copies, so that the originals need not be in memory for this.
-            let (triangle, ray) = (*self, *ray);
-            found = triangle.look_again(&ray, doubtful, inside, found);
+        if (tested.near & !tested.certain).any() {
+            return None;
         }
-        let (hit, t, u, v) = found;
-        let all = (R::splat(f32::NEG_INFINITY), R::splat(f32::INFINITY));
-        let (low, high) = aabb::interval((min, max), (ray.org, ray.rdir), all);
-        let t = high.min(low.max(t));
-        (hit & low.le(high) & ray.t_near.lt(t) & t.le(ray.t_far), t, u, v)
+        Some(aspect.within(ray, (tested.near, tested.t, tested.u, tested.v)))
     }
 
-    /// Decides about lanes whose numerators are within the bound for all triangles: by their own margins, and
-    /// within these by [`crossing`].
+    /// Decides about lanes whose numerators are within the bound: by their margins, and within these by
+    /// [`crossing`].
     #[cold]
     #[inline(never)]
     fn look_again(
@@ -260,9 +295,9 @@ impl<R: Real> TriangleLanes<R> {
         (hit, t, u, v): (R::Mask, R, R, R),
     ) -> (R::Mask, R, R, R) {
         let (mut bits, mut left) = (hit.to_bitmask(), lanes.to_bitmask());
-        let mut rows = [t, u, v].map(|row| [0, 1, 2, 3, 4, 5, 6, 7].map(|i| row.lane(i % R::LANES)));
+        let mut rows = [t, u, v].map(|row| std::array::from_fn::<_, 16, _>(|i| row.lane(i % R::LANES)));
         while left != 0 {
-            let lane = left.trailing_zeros() as usize % 8;
+            let lane = left.trailing_zeros() as usize % 16;
             left &= left - 1;
             let vertices = [self.v0.lane(lane), self.v1.lane(lane), self.v2.lane(lane)];
             if let Some((t, u, v)) = crossing(ray.org.lane(lane), ray.dir.lane(lane), vertices) {

@@ -65,12 +65,12 @@ impl AddAssign for Counts {
 impl Tally for Counts {
     fn node(&mut self, rays: u32) {
         self.nodes += u64::from(rays);
-        self.tests += 1;
+        self.tests += u64::from(rays.div_ceil(8));
     }
 
     fn leaf(&mut self, primitives: u32, rays: u32) {
         self.primitives += u64::from(primitives) * u64::from(rays);
-        self.tests += u64::from(primitives);
+        self.tests += u64::from(primitives) * u64::from(rays.div_ceil(8));
     }
 }
 

@@ -64,6 +64,14 @@ impl Stream for Blocked<'_, '_> {
             self.0.block(index);
         }
     }
+
+    #[inline]
+    fn answer_blocked(&mut self, first: usize, _: usize, mut blocked: u64) {
+        while blocked != 0 {
+            self.0.block(first + blocked.trailing_zeros() as usize);
+            blocked &= blocked - 1;
+        }
+    }
 }
 
 /// Finds the nearest hits of paths.

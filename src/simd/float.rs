@@ -23,6 +23,20 @@ impl f32x8 {
         self.0.to_array()
     }
 
+    /// The lower four lanes and the upper four.
+    #[inline]
+    pub fn of_halves(low: [f32; 4], high: [f32; 4]) -> Self {
+        let ([a, b, c, d], [e, f, g, h]) = (low, high);
+        Self::new([a, b, c, d, e, f, g, h])
+    }
+
+    /// Lanes 4i to 4i + 3.
+    #[inline]
+    pub fn half(self, i: usize) -> [f32; 4] {
+        let [a, b, c, d, e, f, g, h] = self.to_array();
+        if i == 0 { [a, b, c, d] } else { [e, f, g, h] }
+    }
+
     /// self·factor + addend, rounded once where the target fuses and twice where it does not. Its bits
     /// differ between instruction sets: only for tests that cull, with a margin for either.
     #[inline]

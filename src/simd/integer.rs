@@ -23,6 +23,13 @@ impl u32x8 {
         self.0.to_array()
     }
 
+    /// The lower four lanes and the upper four.
+    #[inline]
+    pub fn of_halves(low: [u32; 4], high: [u32; 4]) -> Self {
+        let ([a, b, c, d], [e, f, g, h]) = (low, high);
+        Self::new([a, b, c, d, e, f, g, h])
+    }
+
     /// Lane `i` is lane `indices[i]` of this one; indices below 8.
     #[inline]
     pub fn shuffle(self, indices: Self) -> Self {

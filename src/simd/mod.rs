@@ -1,11 +1,11 @@
-//! Lanes: eight floats, eight integers, eight truth values, and vectors of them.
+//! Lanes: eight floats, eight integers, eight truth values, sixteen of each, and vectors of them.
 //!
 //! The only room that names `wide`. What is exported here has the same bits in every lane on every
 //! instruction set: `+ − × ÷ √`, comparisons and selection. There is no
 //! approximate reciprocal and no transcendental function; the one fused operation ([`f32x8::fused`]) is
 //! for tests that only cull.
 //!
-//! [`Real`] is implemented by `f32` and by [`f32x8`]: code that is generic over it *is* the scalar path
+//! [`Real`] is implemented by `f32`, [`f32x8`] and [`f32x16`]: code that is generic over it *is* the scalar path
 //! and the eight-wide path, and can't drift apart.
 
 mod compress;
@@ -15,6 +15,7 @@ mod integer;
 mod mask;
 mod prefetch;
 mod real;
+mod sixteen;
 mod sort;
 #[cfg(test)]
 mod tests;
@@ -26,8 +27,9 @@ pub use integer::u32x8;
 pub use mask::Mask8;
 pub use prefetch::prefetch;
 pub use real::{Bits, Mask, Real};
+pub use sixteen::{Mask16, f32x16, u32x16};
 pub use sort::sort_descending;
-pub use vector::{Vec3x8, Vector3, vector3};
+pub use vector::{Vec3x8, Vec3x16, Vector3, vector3};
 
 /// Rays in a packet, lanes in a register.
 pub const LANES: usize = 8;

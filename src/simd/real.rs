@@ -65,7 +65,7 @@ pub trait Bits:
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
 }
 
-/// A float for each lane: `f32` or [`f32x8`](super::f32x8).
+/// A float for each lane: `f32`, [`f32x8`](super::f32x8) or, where rays meet geometry, [`f32x16`](super::f32x16).
 ///
 /// Each operation rounds once, to nearest even, in either implementation: equal inputs give equal bits.
 /// Where a result can be NaN its payload is unspecified.
@@ -78,7 +78,7 @@ pub trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// 1 or 8.
+    /// 1, 8 or 16.
     const LANES: usize;
     /// Truth values.
     type Mask: Mask;

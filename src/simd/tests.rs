@@ -84,6 +84,14 @@ fn check_binary<B: Binary>() {
         for i in 0..8 {
             same(got.lane(i), B::apply(a[i], b[i]), (std::any::type_name::<B>(), a[i], b[i]));
         }
+        // Sixteen: these, and the other way round.
+        let other = B::apply(f32x8::new(b), f32x8::new(a));
+        let halves = |a: [f32; 8], b: [f32; 8]| f32x16::of_halves([f32x8::new(a), f32x8::new(b)]);
+        let both = B::apply(halves(a, b), halves(b, a));
+        for i in 0..8 {
+            same(both.lane(i), got.lane(i), (std::any::type_name::<B>(), a[i], b[i]));
+            same(both.lane(i + 8), other.lane(i), (std::any::type_name::<B>(), b[i], a[i]));
+        }
     });
 }
 
@@ -250,5 +258,77 @@ fn reductions_find_the_extremes_in_every_lane() {
                 lanes.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(l, g), &x| (l.min(x), g.max(x)));
             assert_eq!((f32x8::new(lanes).reduce_min(), f32x8::new(lanes).reduce_max()), (least, greatest));
         }
+    }
+}
+
+/// What one operation is for sixteen lanes, two are for eight.
+#[test]
+fn sixteen_lanes_are_twice_eight() {
+    pairs(|a, b| {
+        let (a, b) = ([f32x8::new(a), f32x8::new(b)], [f32x8::new(b), f32x8::new(a)]);
+        let (x, y) = (f32x16::of_halves(a), f32x16::of_halves(b));
+        let bits = |lanes: f32x8| lanes.to_array().map(f32::to_bits);
+        let masks = [x.lt(y), x.le(y), x.equal(y), x.gt(y), x.ge(y)];
+        for half in 0..2 {
+            let (a, b) = (a[half], b[half]);
+            assert_eq!(bits(x.half(half)), bits(a));
+            assert_eq!(bits(x.halves()[half]), bits(a));
+            assert_eq!(bits(x.min(y).half(half)), bits(a.min(b)), "which zero, and whose NaN");
+            assert_eq!(bits(x.max(y).half(half)), bits(a.max(b)));
+            let want = [a.lt(b), a.le(b), a.equal(b), a.gt(b), a.ge(b)].map(Mask::to_bitmask);
+            assert_eq!(masks.map(|mask| mask.to_bitmask() >> (8 * half) & 0xff), want);
+            for quarter in 0..2 {
+                let got = x.quarter(half * 2 + quarter).map(f32::to_bits);
+                assert_eq!(got, a.half(quarter).map(f32::to_bits));
+                assert_eq!(x.to_bits().quarter(half * 2 + quarter), got);
+            }
+        }
+        let mut swapped = x;
+        swapped.put_quarter(1, y.quarter(3));
+        assert_eq!(swapped.quarter(1).map(f32::to_bits), y.quarter(3).map(f32::to_bits));
+        assert_eq!(bits(swapped.half(1)), bits(x.half(1)));
+    });
+    for bits in (0..0x1_0000).step_by(5) {
+        let mask = Mask16::from_bitmask(bits);
+        assert_eq!((mask.to_bitmask(), (!mask).to_bitmask()), (bits, 0xffff - bits));
+        assert_eq!((mask.any(), mask.count()), (bits != 0, bits.count_ones()));
+        let other = Mask16::from_bitmask(0x3c5a);
+        assert_eq!((mask & other).to_bitmask(), bits & 0x3c5a);
+        assert_eq!((mask | other).to_bitmask(), bits | 0x3c5a);
+        let words = Bits::select(mask, u32x16::splat(1), u32x16::splat(2));
+        assert!((0..16).all(|i| words.lane(i) == 2 - (bits >> i & 1)));
+    }
+    assert_eq!((Mask16::splat(true).to_bitmask(), Mask16::splat(false).to_bitmask()), (0xffff, 0));
+    for first in 0..WORDS.len() {
+        let a: [u32; 16] = std::array::from_fn(|i| WORDS[(first + i) % WORDS.len()]);
+        let (x, y) = (u32x16::from_fn(|i| a[i]), u32x16::from_fn(|i| a[15 - i]));
+        let got =
+            [x & y, x | y, x ^ y, !x, x.wrapping_add(y), x.wrapping_mul(y), x << 3, x >> 3, x.reverse_bits()];
+        for i in 0..16 {
+            let (a, b) = (a[i], a[15 - i]);
+            let want = [
+                a & b,
+                a | b,
+                a ^ b,
+                !a,
+                a.wrapping_add(b),
+                a.wrapping_mul(b),
+                a << 3,
+                a >> 3,
+                a.reverse_bits(),
+            ];
+            assert_eq!(got.map(|word| word.lane(i)), want);
+            assert_eq!(x.equal(y).to_bitmask() >> i & 1 != 0, a == b);
+        }
+    }
+    for lane in 0..16 {
+        for value in [-7.0f32, 7.0, f32::INFINITY, f32::NEG_INFINITY] {
+            let lanes = f32x16::from_fn(|i| if i == lane { value } else { 0.5 });
+            assert_eq!((lanes.reduce_min(), lanes.reduce_max()), (value.min(0.5), value.max(0.5)));
+        }
+    }
+    let rows = f32x16::from_rows(|i| std::array::from_fn(|k| (100 * i + k) as f32));
+    for (k, row) in rows.into_iter().enumerate() {
+        assert!((0..16).all(|i| row.lane(i) == (100 * i + k) as f32));
     }
 }

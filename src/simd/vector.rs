@@ -4,7 +4,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use glam::Vec3;
 
-use super::{Real, f32x8};
+use super::{Real, f32x8, f32x16};
 
 /// Three [`Real`]s: a point, a direction, a normal or a linear sRGB colour.
 #[derive(Clone, Copy, Debug, Default)]
@@ -19,6 +19,9 @@ pub struct Vector3<R> {
 
 /// Eight vectors.
 pub type Vec3x8 = Vector3<f32x8>;
+
+/// Sixteen vectors.
+pub type Vec3x16 = Vector3<f32x16>;
 
 /// `Vector3 { x, y, z }`.
 #[inline]
@@ -36,7 +39,7 @@ impl<R: Real> Vector3<R> {
     /// Lane `i` is `f(i)`.
     #[inline]
     pub fn from_fn(mut f: impl FnMut(usize) -> Vec3) -> Self {
-        let mut lanes = [Vec3::ZERO; 8];
+        let mut lanes = [Vec3::ZERO; 16];
         for (i, lane) in lanes[..R::LANES].iter_mut().enumerate() {
             *lane = f(i);
         }
@@ -107,6 +110,12 @@ impl<R: Real> Vector3<R> {
     #[inline]
     pub fn only(self, mask: R::Mask) -> Self {
         Self::select(mask, self, Self::zero())
+    }
+
+    /// Component by component, to vectors of other lanes.
+    #[inline]
+    pub fn each<S>(self, mut f: impl FnMut(R) -> S) -> Vector3<S> {
+        vector3(f(self.x), f(self.y), f(self.z))
     }
 
     /// Component by component.

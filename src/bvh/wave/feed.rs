@@ -6,7 +6,7 @@ use crate::bvh::{
     run::{PACKETS, RUN, Runs},
 };
 use crate::geometry::{Hit, RayLanes, Rayx8};
-use crate::simd::{Bits, LANES, Mask, Real, Vec3x8, f32x8, transpose, u32x8, vector3};
+use crate::simd::{LANES, Real, Vec3x8, f32x8, transpose, u32x8, vector3};
 
 /// Ulps of |rdir|·(|org| + |bound|) by which slabs are widened: 3 for the fused form and its constant, 12
 /// for the widening and the rounding of the kernels' own test.
@@ -77,7 +77,7 @@ impl Ready {
     }
 
     /// The rays of a packet that starts at a place in its stream.
-    fn packet(rays: &Rayx8, first: usize, reach: glam::Vec3, ready: &mut [Self; LANES]) {
+    fn packet(rays: &Rayx8, index: u32x8, reach: glam::Vec3, ready: &mut [Self; LANES]) {
         let RayLanes { org, dir, rdir, t_near, t_far, margin } = rays;
         let inv = rdir.map(|r| r.max(f32x8::splat(-STEEPEST)).min(f32x8::splat(STEEPEST)));
         let reach = Vec3x8::splat(reach);
@@ -88,7 +88,6 @@ impl Ready {
         };
         let (x, y, z) =
             (axis(inv.x, org.x, reach.x), axis(inv.y, org.y, reach.y), axis(inv.z, org.z, reach.z));
-        let index = u32x8::from_fn(|i| (first + i) as u32);
         let rows = [
             transpose([inv.x, inv.y, inv.z, x.0, y.0, z.0, t_near.max(f32x8::zero()), *t_far]),
             transpose([x.1, y.1, z.1, org.x, org.y, org.z, *t_near, f32x8::from_bits(index)]),
@@ -143,7 +142,7 @@ impl Feed {
         tally: &mut T,
     ) -> bool {
         while self.waiting == 0 {
-            if runs.peek::<ANY, L, S, T>(bvh, leaves, stream, tally) != Some(Way::Wave) {
+            if runs.peek::<ANY, L, S, T>(leaves, stream, tally) != Some(Way::Wave) {
                 return false;
             }
             self.refill::<ANY, S>(bvh, stream, runs);
@@ -166,19 +165,19 @@ impl Feed {
         let nowhere = self.entry.as_ref().is_some_and(|node| node.children[0] == Child::ABSENT);
         if !nowhere && !bvh.nodes.is_empty() {
             let reach = bvh.reach();
+            self.waiting = run.active;
             for packet in 0..run.packets() {
-                self.waiting |= u64::from(run.active[packet].to_bitmask()) << (packet * LANES);
-                let first = run.first + packet * LANES;
-                Ready::packet(&run.rays[packet], first, reach, &mut self.ready[packet]);
+                let index = run.numbers(packet);
+                Ready::packet(&run.packet(packet), index, reach, &mut self.ready[packet]);
             }
         }
         self.waiting &= run.there();
-        let blocked = if ANY { run.blocked() } else { 0 };
+        let blocked = run.blocked;
         let mut never = run.there() & !self.waiting;
         while never != 0 {
             let which = never.trailing_zeros() as usize;
             let hit = if blocked >> which & 1 != 0 { Hit::BLOCKED } else { Hit::MISS };
-            stream.answer(run.first + which, &hit);
+            stream.answer(run.ray(which), &hit);
             never &= never - 1;
         }
     }

@@ -105,33 +105,13 @@ impl Bvh {
         let (mut steps, mut blocks) = (0, 0);
         while nodes | sets.leaves != 0 {
             steps += nodes.count_ones();
-            for which in each(nodes) {
-                let slot = &mut slots[which];
-                tally.node(1);
-                slot.step::<ANY>(&self.nodes[slot.child.index()]);
-                if ASK {
-                    self.ask_for(slot.child, leaves);
-                }
-                sets.insert(which, slot.child);
-            }
+            sets = self.pass_nodes::<ANY, ASK, L, T>(leaves, slots, nodes, sets, tally);
             nodes = sets.nodes(nodes);
             let at_leaves = sets.take_leaves();
-            for which in each(at_leaves) {
-                let slot = &mut slots[which];
-                let leaf = slot.child;
-                let (first, count) = leaf.slots();
-                tally.leaf(count, 1);
-                blocks += leaves.blocks(first, count);
-                slot.test::<ANY, L>(leaves, first, count);
-                if ANY && slot.hit.t == f32::NEG_INFINITY {
-                    runs.occluder.remember(leaf);
-                    slot.child = Child::ABSENT;
-                }
-                if ASK {
-                    self.ask_for(slot.child, leaves);
-                }
-                sets.insert(which, slot.child);
-            }
+            let (after, tested) =
+                self.pass_leaves::<ANY, ASK, L, T>(leaves, (slots, at_leaves), sets, runs, tally);
+            sets = after;
+            blocks += tested;
             nodes |= sets.nodes(at_leaves);
             let done = std::mem::take(&mut sets.done);
             sets.leaves &= !done;
@@ -154,5 +134,58 @@ impl Bvh {
             let cost = Cost::RAY * rays + Cost::RAY_NODE * steps + Cost::RAY_BLOCK * blocks;
             runs.learn_alone::<ANY>(cost, rays, kinds);
         }
+    }
+
+    /// Slots at nodes take a step.
+    // By itself, as is the next: what the sets need are registers, and of those a loop among others gets few.
+    #[inline(never)]
+    fn pass_nodes<const ANY: bool, const ASK: bool, L: Leaves, T: Tally>(
+        &self,
+        leaves: &L,
+        slots: &mut [Slot; SLOTS],
+        nodes: u32,
+        mut sets: Sets,
+        tally: &mut T,
+    ) -> Sets {
+        for which in each(nodes) {
+            let slot = &mut slots[which];
+            tally.node(1);
+            slot.step::<ANY>(&self.nodes[slot.child.index()]);
+            if ASK {
+                self.ask_for(slot.child, leaves);
+            }
+            sets.insert(which, slot.child);
+        }
+        sets
+    }
+
+    /// Slots at leaves test a block. Returns how many blocks' time that took, too.
+    #[inline(never)]
+    fn pass_leaves<const ANY: bool, const ASK: bool, L: Leaves, T: Tally>(
+        &self,
+        leaves: &L,
+        (slots, at_leaves): (&mut [Slot; SLOTS], u32),
+        mut sets: Sets,
+        runs: &mut Runs,
+        tally: &mut T,
+    ) -> (Sets, u32) {
+        let mut blocks = 0;
+        for which in each(at_leaves) {
+            let slot = &mut slots[which];
+            let leaf = slot.child;
+            let (first, count) = leaf.slots();
+            tally.leaf(count, 1);
+            blocks += leaves.blocks(first, count);
+            slot.test::<ANY, L>(leaves, first, count);
+            if ANY && slot.hit.t == f32::NEG_INFINITY {
+                runs.occluder.remember(leaf);
+                slot.child = Child::ABSENT;
+            }
+            if ASK {
+                self.ask_for(slot.child, leaves);
+            }
+            sets.insert(which, slot.child);
+        }
+        (sets, blocks)
     }
 }

@@ -1,9 +1,9 @@
 //! Triangles as the leaves hold them: eight in columns.
 
 use super::{Primitive, accept};
-use crate::bvh::Hitx8;
-use crate::geometry::{Aspect, RayLanes, Rayx8, Triangle, TriangleLanes};
-use crate::simd::{Bits, Mask, Mask8, Real, Vector3, f32x8, u32x8, vector3};
+use crate::bvh::HitLanes;
+use crate::geometry::{Aspect, RayLanes, Triangle, TriangleLanes};
+use crate::simd::{Bits, Mask, Real, Vector3, f32x8, vector3};
 
 /// Eight triangles: 320 bytes, all that a test reads. Padding is nowhere: NaN is never hit.
 #[derive(Clone, Copy, Debug)]
@@ -42,28 +42,48 @@ impl TriangleBlock {
 
     /// The triangle in a lane, in all lanes.
     #[inline]
-    pub(super) fn splat(&self, lane: usize) -> TriangleLanes<f32x8> {
+    pub(super) fn splat<R: Real>(&self, lane: usize) -> TriangleLanes<R> {
         let splat = |rows| Vector3::splat(row(rows, lane));
         let (v0, v1, v2) = (splat(&self.v0), splat(&self.v1), splat(&self.v2));
-        TriangleLanes { v0, v1, v2, edges: f32x8::splat(self.edges[lane]) }
+        TriangleLanes { v0, v1, v2, edges: R::splat(self.edges[lane]) }
     }
 
     /// A packet against the triangle in a lane, seen from the packet's origins.
     // Always: as a call, rays and triangles would go through memory.
     #[inline(always)]
-    pub(super) fn intersect<const ANY: bool>(
+    pub(super) fn intersect<const ANY: bool, R: Real>(
         &self,
         (lane, id): (usize, &u32),
-        aspect: &Aspect<f32x8>,
-        ray: &Rayx8,
-        active: Mask8,
-        hit: &mut Hitx8,
+        (aspect, margin): (&Aspect<R>, R),
+        ray: &RayLanes<R>,
+        active: R::Mask,
+        hit: &mut HitLanes<R>,
     ) {
         let limited = RayLanes { t_far: hit.t, ..*ray };
-        let (found, t, u, v) = self.splat(lane).intersect_seen(aspect, &limited, active);
-        if found.any() {
-            accept::<ANY>(hit, found, (t, u, v), || u32x8::splat(*id));
+        match self.splat(lane).intersect_seen(aspect, margin, &limited, active) {
+            Some((found, t, u, v)) => {
+                if found.any() {
+                    accept::<ANY, R>(hit, found, (t, u, v), || R::Bits::splat(*id));
+                }
+            }
+            None => self.intersect_carefully::<ANY, R>((lane, *id), ray, active.to_bitmask(), hit),
         }
+    }
+
+    /// The same next to an edge.
+    #[cold]
+    #[inline(never)]
+    fn intersect_carefully<const ANY: bool, R: Real>(
+        &self,
+        (lane, id): (usize, u32),
+        ray: &RayLanes<R>,
+        active: u32,
+        hit: &mut HitLanes<R>,
+    ) {
+        let limited = RayLanes { t_far: hit.t, ..*ray };
+        let active = R::Mask::from_bitmask(active);
+        let (found, t, u, v) = self.splat(lane).intersect(&limited, active);
+        accept::<ANY, R>(hit, found, (t, u, v), || R::Bits::splat(id));
     }
 
     #[inline]
