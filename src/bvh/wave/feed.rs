@@ -81,13 +81,22 @@ impl Ready {
         let RayLanes { org, dir, rdir, t_near, t_far, margin } = rays;
         let inv = rdir.map(|r| r.max(f32x8::splat(-STEEPEST)).min(f32x8::splat(STEEPEST)));
         let reach = Vec3x8::splat(reach);
-        let room = |inv: f32x8, org: f32x8, reach: f32x8| f32x8::splat(MARGIN) * inv * (org.abs() + reach);
-        let axis = |inv: f32x8, org: f32x8, reach: f32x8| {
-            let (shift, room) = (-(org * inv), room(inv, org, reach));
+        // At this t a ray has left what can be hit, whichever axis says so (0·∞ says nothing); twice, against rounding.
+        let leaves = |rdir: f32x8, org: f32x8, reach: f32x8| (org.abs() + reach) * rdir.abs();
+        let last = leaves(rdir.x, org.x, reach.x).min(f32x8::splat(f32::INFINITY));
+        let last = leaves(rdir.y, org.y, reach.y).min(leaves(rdir.z, org.z, reach.z).min(last));
+        let last = last + last;
+        let axis = |rdir: f32x8, inv: f32x8, org: f32x8, reach: f32x8| {
+            let shift = -(org * inv);
+            let room = f32x8::splat(MARGIN) * inv * (org.abs() + reach);
+            // A slab that is met too early because its reciprocal was cut off stays open until then.
+            let open = f32x8::select(rdir.lt(f32x8::zero()), -last, last);
+            let room = room + open.only(f32x8::splat(STEEPEST).lt(rdir.abs()));
             (shift - room, shift + room)
         };
-        let (x, y, z) =
-            (axis(inv.x, org.x, reach.x), axis(inv.y, org.y, reach.y), axis(inv.z, org.z, reach.z));
+        let x = axis(rdir.x, inv.x, org.x, reach.x);
+        let y = axis(rdir.y, inv.y, org.y, reach.y);
+        let z = axis(rdir.z, inv.z, org.z, reach.z);
         let rows = [
             transpose([inv.x, inv.y, inv.z, x.0, y.0, z.0, t_near.max(f32x8::zero()), *t_far]),
             transpose([x.1, y.1, z.1, org.x, org.y, org.z, *t_near, f32x8::from_bits(index)]),
