@@ -57,7 +57,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("libm", &["compare/", "math/", "light/", "compile/", "load/", "picture/"]),
     ("miette", &["cli/", "load/error.rs"]),
     ("ply_rs_bw", &["load/ply.rs"]),
-    ("rayon", &["bvh/", "compile/", "render/", "lobe/", "verify/", "cli/"]),
+    ("rayon", &["picture/", "bvh/", "compile/", "render/", "lobe/", "verify/", "cli/"]),
     ("roxmltree", &["load/"]),
     ("serde", &["cli/", "load/sh.rs"]),
     ("serde_json", &["cli/", "load/sh.rs"]),
@@ -65,6 +65,7 @@ const DOORS: &[(&str, &[&str])] = &[
     // In `load/` and `cli/` only in tests.
     ("tempfile", &["load/", "picture/", "cli/"]),
     ("tev_client", &["cli/"]),
+    ("textwrap", &["cli/"]),
     ("thiserror", &[""]),
     ("tobj", &["load/obj.rs"]),
     ("wide", &["simd/"]),

@@ -5,6 +5,7 @@
 mod decode;
 mod encode;
 mod error;
+mod exr_blocks;
 mod exr_header;
 mod limits;
 mod openexr;
