@@ -128,6 +128,40 @@ fn albedo_and_normals_are_looked_at() {
     assert!(usual != red(stripes, flat) && usual != red(flat, stripes));
 }
 
+/// The program hands over the layers that the camera sees, each in its place.
+#[test]
+fn the_program_shows_albedo_and_normals() {
+    if !has_library() {
+        return;
+    }
+    let folder = folder("denoise/layers");
+    let out = path(&folder, "out.exr");
+    render(&out, &["--spp", "8", "--denoise", "--aov", "albedo,normal"]);
+    let channels = exr::prelude::read_all_flat_layers_from_file(&out).expect("it was written");
+    let layer = &channels.layer_data[0];
+    let channel = |channel: &exr::prelude::AnyChannel<exr::prelude::FlatSamples>| Channel {
+        name: channel.name.to_string(),
+        samples: channel.sample_data.values_as_f32().collect(),
+    };
+    let picture = Picture {
+        width: layer.size.width() as u32,
+        height: layer.size.height() as u32,
+        channels: layer.channel_data.list.iter().map(channel).collect(),
+        place: None,
+    };
+    let denoiser = Denoiser::load(env::var_os("OIDN_LIB").as_deref(), 2).expect("it was there");
+    let (albedo, normal) = (["albedo.R", "albedo.G", "albedo.B"], ["normal.X", "normal.Y", "normal.Z"]);
+    let told = read(&path(&folder, "out.denoised.exr"));
+    let error = |albedo, normal| {
+        let here = denoiser.denoise(&picture, albedo, normal).expect("denoised");
+        difference(&here, &told).expect("of one size").rel_mse
+    };
+    let same = error(albedo, normal);
+    for (other, which) in [(error(albedo, albedo), "normal"), (error(normal, normal), "albedo")] {
+        assert!(same < 1e-9 && other > 1e-6, "relMSE {same}, with another {which} {other}");
+    }
+}
+
 #[test]
 fn layers_and_formats_are_those_that_were_asked_for() {
     if !has_library() {

@@ -16,7 +16,7 @@ use std::{
 use packlight::{
     compile::compile,
     load::{LoadOptions, load},
-    render::{Frame, Plan},
+    render::{Frame, Plan, part::Part},
 };
 use program::{command, folder, packlight, path, stderr, stdout};
 
@@ -251,6 +251,27 @@ fn a_finished_render_goes_on_to_more_samples() {
 }
 
 #[test]
+fn a_checkpoint_of_another_version_is_refused() {
+    let folder = folder("parts/other-version");
+    let (out, kept) = (path(&folder, "out.exr"), path(&folder, "kept.exr"));
+    succeeds(&render(&out, &["--checkpoint", &kept]));
+    let file = bytes(&kept);
+    // The part stands behind the picture: its length, and a mark.
+    let (rest, length) = file[..file.len() - 8].split_last_chunk().expect("a length");
+    let length = usize::try_from(u64::from_le_bytes(*length)).expect("a length");
+    let (picture, part) = rest.split_at(rest.len() - length);
+    let mut part = Part::from_bytes(part).expect("a part");
+    let version = part.facts.iter_mut().find(|(name, _)| name == "version").expect("it is said");
+    assert_eq!(version.1, env!("CARGO_PKG_VERSION"));
+    version.1 = "0.0.1".into();
+    let part = part.to_bytes();
+    fs::write(&kept, [picture, &part, &part.len().to_le_bytes(), &file[file.len() - 8..]].concat())
+        .expect("writable");
+    let message = format!("the version is 0.0.1 there and {} here", env!("CARGO_PKG_VERSION"));
+    fails(&render(&out, &["--resume", &kept]), 1, &message);
+}
+
+#[test]
 fn what_was_spent_before_counts() {
     let loaded = load(Path::new(SCENE), &LoadOptions::default()).expect("it loads");
     let scene = compile(&loaded.description).expect("it compiles");
@@ -258,6 +279,8 @@ fn what_was_spent_before_counts() {
     part.time = Duration::from_secs(1000);
     let frame = Frame::resume(&scene, Plan::default(), &[], part).expect("it is of the same render");
     assert!(frame.develop().statistics.time >= Duration::from_secs(1000));
+    // And is kept for whoever goes on from there.
+    assert!(frame.part("", &[]).time >= Duration::from_secs(1000));
 }
 
 /// Long enough to be stopped by hand.
