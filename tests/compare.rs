@@ -70,8 +70,12 @@ fn the_command_tells_draws_and_judges() {
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert!(json["flip"].as_f64().is_some_and(|flip| (flip - HDR.0).abs() < 1e-5), "{json}");
     assert_eq!(json["flip_kind"], "hdr");
+    assert_eq!(json["output"], drawn.as_str());
     assert!(json["mean_ratio"][0].as_f64().is_some_and(|ratio| ratio > 0.7 && ratio < 1.0), "{json}");
     assert!(fs::read(&drawn).expect("it was written").starts_with(b"\x89PNG"));
+
+    let told = packlight(&["compare", &reference, &test, "-o", &drawn]);
+    assert!(String::from_utf8_lossy(&told.stdout).contains(&format!(" -> {drawn}\n")), "{told:?}");
 
     let judged = packlight(&["compare", &reference, &test, "--max-flip", "0.1"]);
     assert_eq!(judged.status.code(), Some(1));

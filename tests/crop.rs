@@ -1,4 +1,4 @@
-//! `--crop`: a part of the picture is to the bit what it is in the whole one.
+//! `--crop` and `--cropwindow`: a part of the picture is to the bit what it is in the whole one.
 
 #![allow(missing_docs)]
 
@@ -104,6 +104,17 @@ fn crops_are_sharded_and_told_apart() {
 }
 
 #[test]
+fn a_window_is_the_crop_that_it_covers() {
+    let folder = folder("crop/window");
+    let file = |name: &str| path(&folder, name);
+    render(&file("crop.exr"), &["--crop", "45,90,0,18"]);
+    // A quarter of 70 rows is 17½.
+    render(&file("window.exr"), &["--cropwindow", "0.5,1,0,0.25"]);
+    let bytes = |name: &str| fs::read(file(name)).expect("it was written");
+    assert!(bytes("crop.exr") == bytes("window.exr"));
+}
+
+#[test]
 fn what_is_no_crop_is_2_before_anything_is_written() {
     let folder = folder("crop/refused");
     let out = path(&folder, "out.exr");
@@ -112,9 +123,14 @@ fn what_is_no_crop_is_2_before_anything_is_written() {
         assert!(!Path::new(&out).exists());
     };
     refused("1,2,3", "--crop 100,200,0,50");
-    refused("0.1,0.5,0,1", "--crop 100,200,0,50");
+    refused("0.1,0.5,0,1", "shares of the size go to --cropwindow");
     refused("5,5,0,9", "x0 is 5 and x1 is 5");
     refused("0,9,7,6", "y0 is 7 and y1 is 6");
     refused("0,91,0,70", "90 x 70 pixels");
     fails(&["render", SCENE, "--pixel", "1,1", "--crop", "0,1,0,1"], 2, "--crop");
+    let window = ["render", SCENE, "-o", &out, "--width", "90", "--cropwindow"];
+    fails(&[&window[..], &["0,64,0,64"]].concat(), 2, "pixels go to --crop");
+    fails(&[&window[..], &["0.101,0.102,0,1"]].concat(), 2, "no pixel of a picture of 90 x 90");
+    fails(&[&window[..], &["0,1,0,1", "--crop", "0,1,0,1"]].concat(), 2, "cannot be used with");
+    assert!(!Path::new(&out).exists());
 }

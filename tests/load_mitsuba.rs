@@ -20,7 +20,7 @@ fn load_text_with(text: &str, defines: &[(&str, &str)]) -> Result<Loaded, LoadEr
     let path = folder.path().join("scene.xml");
     fs::write(&path, text).expect("the folder for temporary files can be written");
     let defines = defines.iter().map(|&(name, value)| (name.into(), value.into())).collect();
-    load(&path, &LoadOptions { defines })
+    load(&path, &LoadOptions { defines, ..LoadOptions::default() })
 }
 
 fn load_body(body: &str) -> SceneDescription {
@@ -325,6 +325,38 @@ fn nine_coefficients_are_a_light() {
     assert_eq!(coefficients[8].to_array(), [16.0, 1.0, -2.0]);
     let error = read("<string name='filename' value='bad.json'/>").unwrap_err();
     assert!(error.to_string().contains("the coefficients can't be used: "), "{error}");
+}
+
+#[test]
+fn a_name_without_an_extension_is_not_guessed_but_proposed() {
+    let told = |path: &str| {
+        let error = load(path.as_ref(), &LoadOptions::default()).expect_err("nothing is guessed");
+        Diagnostic::help(&error).expect("there is a way out").to_string()
+    };
+    assert_eq!(told("scenes/cornell"), "did you mean `scenes/cornell.xml`?");
+    assert!(told("scenes/quark").starts_with("scenes are Mitsuba 3 `.xml`"));
+    assert_eq!(told("scenes/cornel.xml"), "did you mean `scenes/cornell.xml`?");
+}
+
+#[test]
+fn sensors_are_chosen_by_their_number() {
+    let folder = tempfile::tempdir().expect("the folder for temporary files can be written");
+    let path = folder.path().join("scene.xml");
+    let film = "<film type='hdrfilm'><rfilter type='box'/></film>";
+    let sensor = |kind: &str| format!("<sensor type='{kind}'>{film}</sensor>");
+    let body = [sensor("perspective"), sensor("orthographic")].concat();
+    let head = "<scene version='3.0.0'><integrator type='path'/><emitter type='constant'/>";
+    fs::write(&path, format!("{head}{body}</scene>")).expect("writable");
+    let with = |sensor| load(&path, &LoadOptions { sensor, ..LoadOptions::default() });
+    for (chosen, parallel, warnings) in [(None, false, 1), (Some(0), false, 0), (Some(1), true, 0)] {
+        let loaded = with(chosen).expect("it loads");
+        let is_parallel = matches!(loaded.description.sensor.projection, Projection::Orthographic);
+        assert_eq!((is_parallel, loaded.warnings.len()), (parallel, warnings), "{chosen:?}");
+    }
+    let error = with(Some(2)).expect_err("there are two").to_string();
+    assert!(error.contains("there is no sensor 2: the scene has 2"), "{error}");
+    let bare = load("gen:soup:10".as_ref(), &LoadOptions { sensor: Some(1), ..LoadOptions::default() });
+    assert!(bare.expect_err("it has one").to_string().contains("a bare mesh is given one"));
 }
 
 #[test]

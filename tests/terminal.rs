@@ -72,6 +72,19 @@ fn nothing_is_wider_than_the_terminal() {
     assert!(told.lines().any(|line| line.contains("materials") && line.contains("ward")), "{told}");
 }
 
+#[test]
+fn sentences_are_broken_between_words() {
+    let out = path(&folder("terminal/sentences"), "a.exr");
+    let words = "render scenes/cornell.xml --width 8 --spp 1 --quiet --display-server localhost:1 -o";
+    let Some(told) = on_a_terminal(&format!("{words} {out}"), "") else { return };
+    assert!(told.starts_with("\x1b[33mwarning:\x1b[0m no display server at localhost:1 ("), "{told}");
+    let lines: Vec<&str> = told.lines().collect();
+    let (first, rest) = lines.split_first().expect("there is a warning");
+    assert!(first.chars().count() <= COLUMNS + 9 && rest.iter().all(|line| line.starts_with("  ")), "{told}");
+    let joined = told.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(joined.ends_with("; the render goes on without it"), "{told}");
+}
+
 /// What a shell prints, or `None` if it is not there.
 fn shell(name: &str, script: &str) -> Option<String> {
     let folder = std::path::Path::new(PROGRAM).parent().expect("it is in a folder").display().to_string();
@@ -84,7 +97,7 @@ fn shell(name: &str, script: &str) -> Option<String> {
 }
 
 #[test]
-fn shells_complete_commands_options_and_values() {
+fn bash_and_fish_complete_commands_options_and_values() {
     let bash = |words: &str, word: &str, before: &str| {
         let count = words.split(' ').count();
         shell(
@@ -99,6 +112,7 @@ fn shells_complete_commands_options_and_values() {
         shell("fish", &format!("packlight completions fish | source; complete -C '{line}' | cut -f1 | xargs"))
     };
     for (words, word, before, expected) in [
+        ("packlight", "re", "packlight", "render\n"),
         ("packlight", "comp", "packlight", "compare completions\n"),
         ("packlight render", "--ton", "render", "--tonemap\n"),
         ("packlight render --exr-compression", "zi", "--exr-compression", "zips zip\n"),
@@ -116,9 +130,33 @@ fn shells_complete_commands_options_and_values() {
             assert_eq!(sorted(&told), sorted(expected), "{words} {word}: {told}");
         }
     }
-    // zsh completes at a prompt only; that it takes the script is all that is asked here.
-    let takes = "autoload -U compinit; compinit -D -u; eval \"$(packlight completions zsh)\"; echo ${+functions[_packlight]}";
-    if let Some(told) = shell("zsh", takes) {
-        assert_eq!(told, "1\n");
+}
+
+/// What a line has become for somebody who types it at zsh's prompt and presses the tabulator, or `None` if there is
+/// no zsh. The key ^X tells it.
+fn completed_by_zsh(line: &str) -> Option<String> {
+    let script = r#"zmodload zsh/zpty; zpty inner zsh -f -i
+        zpty -w inner 'TMOUT=300 PS1= RPS1=; autoload -U compinit; compinit -D -u; eval "$(packlight completions zsh)"'
+        zpty -w inner 'told() { print -r -- "<${BUFFER}>"; exit }; zle -N told; bindkey "^X" told; bindkey "^I" complete-word'
+        zpty -w -n inner 'LINE'$'\t\C-X'
+        zpty -r inner"#;
+    let told = shell("zsh", &script.replace("LINE", line))?;
+    let (_, last) = told.rsplit_once('<').unwrap_or_else(|| panic!("{line}: {told}"));
+    Some(last.split('>').next().unwrap_or_default().to_owned())
+}
+
+#[test]
+fn zsh_completes_at_its_prompt() {
+    for (line, expected) in [
+        ("packlight re", "packlight render "),
+        ("packlight render --ton", "packlight render --tonemap="),
+        ("packlight render --exr-compression pi", "packlight render --exr-compression piz "),
+        ("packlight brdf sheet --sp", "packlight brdf sheet --spp="),
+        // There are two, which are shown.
+        ("packlight com", "packlight comp"),
+        ("packlight nothing-like-it", "packlight nothing-like-it"),
+    ] {
+        let Some(completed) = completed_by_zsh(line) else { return };
+        assert_eq!(completed, expected, "{line}");
     }
 }

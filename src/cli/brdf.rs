@@ -117,9 +117,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 impl Arguments {
     fn load(&self) -> Result<Material, Failure> {
         let (material, warnings) = match (&self.model, &self.scene, &self.material) {
-            (_, Some(scene), Some(id)) => {
-                load_material(scene, id, &LoadOptions { defines: self.defines.clone() })?
-            }
+            (_, Some(scene), Some(id)) => load_material(
+                scene,
+                id,
+                &LoadOptions { defines: self.defines.clone(), ..LoadOptions::default() },
+            )?,
             (model, ..) => read_material(model.as_deref().unwrap_or_default())?,
         };
         warn(&warnings);

@@ -55,6 +55,8 @@ pub(super) struct Arguments {
 struct Comparison {
     reference: String,
     test: String,
+    /// Where the difference was drawn.
+    output: Option<String>,
     width: u32,
     height: u32,
     /// Test in reference; `null` where both are black.
@@ -97,6 +99,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let comparison = Comparison {
         reference: reference.display().to_string(),
         test: test.display().to_string(),
+        output: output.as_ref().map(|output| output.path.display().to_string()),
         width: pictures.0.width,
         height: pictures.0.height,
         mean_ratio: numbers.mean_ratio.map(|ratio| Some(ratio).filter(|ratio| ratio.is_finite())),
@@ -125,7 +128,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{} in place of {}, {} x {}", self.test, self.reference, self.width, self.height)?;
+        write!(f, "{} in place of {}, {} x {}", self.test, self.reference, self.width, self.height)?;
+        writeln!(f, "{}", self.output.as_ref().map_or(String::new(), |output| format!(" -> {output}")))?;
         if self.different_numbers == 0 {
             return writeln!(f, "  the same to the bit");
         }

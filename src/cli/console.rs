@@ -4,6 +4,7 @@ use std::io::{self, ErrorKind, Write, stdout};
 
 use serde::Serialize;
 use terminal_size::{Width, terminal_size_of};
+use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm};
 
 use super::failure::Failure;
 
@@ -22,25 +23,16 @@ pub(super) fn print_folded(text: &str, indent: usize) -> Result<(), Failure> {
     }
 }
 
-/// Lines broken at blanks. A word is never broken.
-fn folded(text: &str, indent: usize, width: usize) -> String {
-    let mut out = String::new();
-    for line in text.lines() {
-        let mut column = 0;
-        for word in line.split_inclusive(' ') {
-            let length = word.trim_end().chars().count();
-            if column + length > width && column > indent {
-                out.truncate(out.trim_end().len());
-                out += "\n";
-                out += &" ".repeat(indent);
-                column = indent;
-            }
-            out += word;
-            column += word.chars().count();
-        }
-        out += "\n";
-    }
-    out
+/// Lines broken at blanks. A word is never broken, and a colour takes no room.
+pub(super) fn folded(text: &str, indent: usize, width: usize) -> String {
+    let indent = " ".repeat(indent);
+    let options = Options::new(width)
+        .subsequent_indent(&indent)
+        .break_words(false)
+        .word_separator(WordSeparator::AsciiSpace)
+        .word_splitter(WordSplitter::NoHyphenation)
+        .wrap_algorithm(WrapAlgorithm::FirstFit);
+    text.lines().map(|line| textwrap::fill(line, &options) + "\n").collect()
 }
 
 /// One JSON object and a newline.
@@ -76,6 +68,11 @@ mod tests {
         assert_eq!(folded(text, 6, 80), text);
         assert_eq!(folded(text, 6, 16), "  one two,\n      three,\n      four\n  short\n");
         assert_eq!(folded("abcdefgh ij\n", 2, 4), "abcdefgh\n  ij\n");
+        assert_eq!(
+            folded("  name      a well-known word   and\n", 12, 24),
+            "  name      a well-known\n            word   and\n"
+        );
+        assert_eq!(folded("\na ± b × c\n", 2, 9), "\na ± b × c\n");
     }
 
     #[test]

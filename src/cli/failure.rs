@@ -8,7 +8,7 @@ use std::{
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 use terminal_size::{Width, terminal_size_of};
 
-use super::{exit, quantity::counted};
+use super::{console::folded, exit, quantity::counted};
 use crate::{
     compile::CompileError,
     load::{LoadError, Warning},
@@ -20,6 +20,8 @@ const MAX_WIDTH: usize = 100;
 const MIN_WIDTH: usize = 20;
 /// Away from a terminal a sentence is one line, to be searched for.
 const ENDLESS: usize = 1 << 20;
+/// Where a sentence goes on that is longer than a line.
+const INDENT: usize = 2;
 /// More than this of them are not read.
 const MAX_WARNINGS: usize = 20;
 
@@ -52,8 +54,8 @@ impl Failure {
         match self {
             Self::Usage(error) => drop(error.print()),
             Self::Scene(error) => tell_report(&**error),
-            Self::Sentence(sentence) => tell(&format!("{} {sentence}\n", headed("error:", RED))),
-            Self::Stopped(sentence) => tell(&format!("{sentence}\n")),
+            Self::Sentence(sentence) => tell_sentence(&format!("{} {sentence}", headed("error:", RED))),
+            Self::Stopped(sentence) => tell_sentence(sentence),
         }
     }
 }
@@ -94,7 +96,7 @@ pub(super) fn warn(warnings: &[Warning]) {
 
 /// A warning that is not about a file.
 pub(super) fn warn_of(warning: impl Display) {
-    tell(&format!("{} {warning}\n", headed("warning:", YELLOW)));
+    tell_sentence(&format!("{} {warning}", headed("warning:", YELLOW)));
 }
 
 // As in the reports about files.
@@ -105,6 +107,10 @@ const YELLOW: u8 = 33;
 fn headed(word: &str, colour: u8) -> String {
     let coloured = stderr().is_terminal() && !no_color();
     if coloured { format!("\x1b[{colour}m{word}\x1b[0m") } else { word.to_owned() }
+}
+
+fn tell_sentence(text: &str) {
+    tell(&folded(text, INDENT, width()));
 }
 
 fn tell(text: &str) {
@@ -130,9 +136,13 @@ fn theme(terminal: bool, no_color: bool) -> GraphicalTheme {
 }
 
 fn tell_report(told: &dyn Diagnostic) {
-    let width = terminal_size_of(stderr())
-        .map_or(ENDLESS, |(Width(columns), _)| usize::from(columns).clamp(MIN_WIDTH, MAX_WIDTH));
-    tell(&report(told, theme(stderr().is_terminal(), no_color()), width));
+    tell(&report(told, theme(stderr().is_terminal(), no_color()), width()));
+}
+
+/// Columns that a message may take.
+fn width() -> usize {
+    terminal_size_of(stderr())
+        .map_or(ENDLESS, |(Width(columns), _)| usize::from(columns).clamp(MIN_WIDTH, MAX_WIDTH))
 }
 
 fn report(told: &dyn Diagnostic, theme: GraphicalTheme, width: usize) -> String {

@@ -283,7 +283,7 @@ mod tests {
             "100,000 of 1 group, 6,945,100,000 primitives, 250 bytes an instance",
             "0 deep, 3.0 MiB, medium quality",
             "MiB to render",
-            "building the BVH 0 bytes, film",
+            "program 8.5 MiB, film",
             "768 x 576",
             "perspective, 42.31 degrees",
             "path",

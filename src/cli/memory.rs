@@ -77,10 +77,10 @@ impl Expected {
     }
 }
 
-/// Parts of a budget, for people.
+/// Parts of a budget, for people: those that there are.
 pub(super) fn listed(parts: &[(&str, u64)]) -> String {
     let part = |&(name, bytes): &(&str, u64)| format!("{name} {}", quantity::memory(bytes));
-    parts.iter().map(part).collect::<Vec<_>>().join(", ")
+    parts.iter().filter(|(_, bytes)| *bytes > 0).map(part).collect::<Vec<_>>().join(", ")
 }
 
 /// For clap: `2GiB`, `512MB`, `1.5G`, `4096`. Units of 1024 end in `iB` or are one letter, of 1000 end in `B`.

@@ -173,7 +173,8 @@ mod tests {
     fn names_of_pbrt_and_mitsuba_are_understood() {
         for words in [
             "render a.xml --outfile b.exr --nthreads 2 --pixelbounds 0,1,0,1 --seed 3 --spp 4 --quiet",
-            "render a.xml -o b.exr -t 2 -D spp=4",
+            "render a.xml -o b.exr -t 2 -D spp=4 -s 1",
+            "render a.xml -o b.exr --cropwindow 0,0.5,0,1",
             "bench a.xml -t 1",
         ] {
             let parsed = Cli::try_parse_from(format!("packlight {words}").split(' '));

@@ -45,7 +45,12 @@ fn from_bytes(bytes: &[u8]) -> Result<Part, PartFormatError> {
 pub(super) fn load(path: &Path) -> Result<Part, Failure> {
     let failed = |error: String| Failure::Sentence(format!("{}: {error}", path.display()));
     let bytes = fs::read(path).map_err(|error| failed(error.to_string()))?;
-    from_bytes(&bytes).map_err(|error| failed(error.to_string()))
+    from_bytes(&bytes).map_err(|error| match error {
+        PartFormatError::Foreign => failed(format!(
+            "{error}; those are what --checkpoint and --shard write, and an .exr of a render that was stopped"
+        )),
+        _ => failed(error.to_string()),
+    })
 }
 
 #[cfg(test)]

@@ -40,6 +40,7 @@ use crate::{
     render::{self, Coverage, Settings, Watch},
     scene::{AovChannel, Film},
 };
+use crop::CropOptions;
 use keep::{KeepOptions, Name};
 use lesson::Lesson;
 use plan::{Planned, planned};
@@ -87,12 +88,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "H", help_heading = PICTURE, value_parser = side())]
     height: Option<u32>,
 
-    /// Only these columns and rows of the picture: from x0 up to, and without, x1
-    ///
-    /// In pixels of the whole picture, in place of the scene's own crop. Pixels are to the bit what they are in
-    /// the whole; but tiles begin at the crop, so by --target-error others of them may be done.
-    #[arg(long, visible_alias = "pixelbounds", value_name = "x0,x1,y0,y1", help_heading = PICTURE, conflicts_with = "pixel", value_parser = crop::parse)]
-    crop: Option<crop::Bounds>,
+    #[command(flatten, next_help_heading = PICTURE)]
+    crop: CropOptions,
 
     /// Seed of every random decision
     #[arg(long, value_name = "N", help_heading = PICTURE)]

@@ -27,22 +27,27 @@ pub(super) struct Source {
     /// Value of `$NAME` in the scene, stronger than its <default>; repeatable
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
     defines: Vec<(String, String)>,
+
+    /// Which of the scene's sensors, from 0; the first if not given
+    #[arg(short, long, value_name = "N")]
+    sensor: Option<usize>,
 }
 
 impl Source {
     pub(super) fn new(path: PathBuf, defines: Vec<(String, String)>) -> Self {
-        Self { path, defines }
+        Self { path, defines, sensor: None }
     }
 
     /// The definitions, as they were typed.
     pub(super) fn options(&self) -> String {
-        self.defines.iter().map(|(name, value)| format!(" -D {name}={value}")).collect()
+        let defines = self.defines.iter().map(|(name, value)| format!(" -D {name}={value}"));
+        defines.chain(self.sensor.map(|index| format!(" --sensor {index}"))).collect()
     }
 
     /// Loads the scene and tells its warnings.
     pub(super) fn load(&self) -> Result<(Loaded, Duration), Failure> {
         let start = Instant::now();
-        let options = LoadOptions { defines: self.defines.clone() };
+        let options = LoadOptions { defines: self.defines.clone(), sensor: self.sensor };
         let loaded = load(&self.path, &options)?;
         let time = start.elapsed();
         warn(&loaded.warnings);

@@ -16,6 +16,7 @@ mod serialized;
 pub mod sh;
 mod spectrum;
 mod text;
+mod unreadable;
 
 use std::path::Path;
 
@@ -29,6 +30,8 @@ use crate::scene::{Material, Mesh, SceneDescription};
 pub struct LoadOptions {
     /// `-D name=value`: values of `$name`, stronger than `<default>`.
     pub defines: Vec<(String, String)>,
+    /// Which of the scene's sensors, counted from 0 in the order in which they stand; the first if not said.
+    pub sensor: Option<usize>,
 }
 
 /// A loaded scene, and what was legal but probably wrong in its files.
@@ -49,8 +52,12 @@ pub struct Loaded {
 /// [`LoadError`] with file, line, column and the way out.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
     let mut warnings = Vec::new();
-    let description = match Kind::of(path) {
-        Kind::Mitsuba => return mitsuba::read_scene(path, &options.defines),
+    let kind = Kind::of(path);
+    if let (Kind::Mesh | Kind::Generated(_), Some(sensor @ 1..)) = (&kind, options.sensor) {
+        return Err(LoadError::new(path, format!("there is no sensor {sensor}: a bare mesh is given one")));
+    }
+    let description = match kind {
+        Kind::Mitsuba => return mitsuba::read_scene(path, options),
         Kind::Mesh => bare::describe(path, &mut warnings)?,
         Kind::Generated(spec) => bare::describe_mesh(spec.into(), generate::mesh(spec)?),
         Kind::Other(extension) => return Err(unknown(path, &extension)),
@@ -134,7 +141,17 @@ fn is_obj(path: &Path) -> bool {
 }
 
 fn unknown(path: &Path, extension: &str) -> LoadError {
-    LoadError::new(path, format!("files of the kind `.{extension}` are not known")).help(
-        "scenes are Mitsuba 3 `.xml`; bare meshes are `.obj`, `.ply` or made on the spot: `gen:soup:100k`",
-    )
+    if extension.is_empty() {
+        let meant = ["xml", "obj", "ply"].map(|extension| path.with_extension(extension));
+        let error = LoadError::new(path, "a name without an extension does not say what the file is");
+        return match meant.iter().find(|path| path.is_file()) {
+            Some(file) => error.help(format!("did you mean `{}`?", file.display())),
+            None => error.help(KINDS),
+        };
+    }
+    LoadError::new(path, format!("files of the kind `.{extension}` are not known")).help(KINDS)
 }
+
+/// What can be loaded.
+const KINDS: &str =
+    "scenes are Mitsuba 3 `.xml`; bare meshes are `.obj`, `.ply` or made on the spot: `gen:soup:100k`";

@@ -2,7 +2,7 @@
 
 use std::{fs, ops::Range, path::Path};
 
-use super::LoadError;
+use super::{LoadError, unreadable::unreadable};
 
 /// A file as UTF-8. Names in other 8-bit encodings lose letters but don't stop the file: everything
 /// that counts is ASCII.
@@ -22,7 +22,7 @@ pub(super) fn read(path: &Path) -> Result<String, LoadError> {
 
 /// A file as it is.
 pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>, LoadError> {
-    fs::read(path).map_err(|error| LoadError::new(path, format!("can't be read: {error}")))
+    fs::read(path).map_err(|error| unreadable(path, &error))
 }
 
 /// Where `part`, a slice of `text`, stands in it.

@@ -35,9 +35,8 @@ pub(super) fn planned(arguments: &Arguments, output: &Output) -> Result<Planned,
     let description = &mut loaded.description;
     arguments.overrides().apply(description);
     let film = &mut description.sensor.film;
-    if let Some(bounds) = arguments.crop {
-        film.crop = Some(bounds.of(film).map_err(|message| refused(ErrorKind::ValueValidation, message))?);
-    }
+    let crop = arguments.crop.of(film).map_err(|message| refused(ErrorKind::ValueValidation, message))?;
+    film.crop = crop.or(film.crop);
     description.aovs = arguments.layers();
     can_hold(output.format, description)?;
     if arguments.denoise {

@@ -43,16 +43,17 @@ use properties::Object;
 pub(super) use single::{read_by_id, read_line};
 pub(super) use source::Span;
 use vocabulary::Class;
+pub(super) use vocabulary::nearest;
 
-use super::{LoadError, Loaded, Origin, Origins};
+use super::{LoadError, LoadOptions, Loaded, Origin, Origins};
 use crate::scene::{Emitter, Material, MaterialIndex, Rgb, SceneDescription, Shape, Texture};
 
-/// Reads a scene; `defines` are stronger than `<default>`.
-pub(super) fn read_scene(path: &Path, defines: &[(String, String)]) -> Result<Loaded, LoadError> {
-    let document = reader::read(path, defines)?;
+/// Reads a scene.
+pub(super) fn read_scene(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
+    let document = reader::read(path, &options.defines)?;
     let mut builder = Builder::default();
     builder.files.attributed = document.nodes.iter().any(|node| node.plugin == mesh_attribute::PLUGIN);
-    builder.scene(Object::root(&document))?;
+    builder.scene(Object::root(&document), options.sensor)?;
     let mut warnings = builder.files.warnings;
     warnings.extend(document.warnings.take());
     Ok(Loaded { description: builder.description, warnings, origins: builder.origins })
@@ -70,8 +71,8 @@ struct Builder {
 }
 
 impl Builder {
-    fn scene(&mut self, scene: Object) -> Result<(), LoadError> {
-        self.sensor(scene)?;
+    fn scene(&mut self, scene: Object, sensor: Option<usize>) -> Result<(), LoadError> {
+        self.sensor(scene, sensor)?;
         match scene.child(Class::Integrator)? {
             Some(integrator) => self.description.integrator = integrator::build(integrator, &mut self.files)?,
             None => {
@@ -132,15 +133,25 @@ impl Builder {
         Ok(shape)
     }
 
-    fn sensor(&mut self, scene: Object) -> Result<(), LoadError> {
+    fn sensor(&mut self, scene: Object, chosen: Option<usize>) -> Result<(), LoadError> {
         let sensors = scene.children(Class::Sensor);
-        // Or a shape has one.
-        let Some((&first, others)) = sensors.split_first() else { return Ok(()) };
+        let Some(&used) = sensors.get(chosen.unwrap_or(0)) else {
+            return match chosen {
+                Some(index) => Err(scene
+                    .error(format!("there is no sensor {index}: the scene has {}", sensors.len()))
+                    .help("sensors are counted from 0, in the order in which they stand")),
+                // Or a shape has one.
+                None => Ok(()),
+            };
+        };
         self.sees = true;
-        self.description.sensor = sensor::build(first, &mut self.files)?;
-        for other in others {
-            let warning = other.warning("the first sensor is used, this one is not");
-            self.files.warnings.push(warning.label("not used").help("remove it, or let it stand first"));
+        self.description.sensor = sensor::build(used, &mut self.files)?;
+        if chosen.is_none() {
+            for (index, other) in sensors.iter().enumerate().skip(1) {
+                let warning = other.warning("the first sensor is used, this one is not").label("not used");
+                let help = format!("remove it, or choose it by --sensor {index}");
+                self.files.warnings.push(warning.help(help));
+            }
         }
         Ok(())
     }

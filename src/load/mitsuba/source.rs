@@ -7,7 +7,7 @@ use std::{
     sync::Arc,
 };
 
-use crate::load::{LoadError, Warning};
+use crate::load::{LoadError, Warning, unreadable::unreadable};
 
 /// A text file in memory.
 #[derive(Debug)]
@@ -18,7 +18,7 @@ pub(super) struct Source {
 
 impl Source {
     pub(super) fn read(path: &Path) -> Result<Arc<Self>, LoadError> {
-        let bytes = fs::read(path).map_err(|e| LoadError::new(path, format!("can't be read: {e}")))?;
+        let bytes = fs::read(path).map_err(|error| unreadable(path, &error))?;
         let text = String::from_utf8(bytes).map_err(|e| {
             LoadError::new(
                 path,

@@ -149,7 +149,7 @@ pub(super) const PROPERTIES: [&str; 9] =
 pub(super) const FOREIGN_ELEMENTS: [&str; 5] = ["medium", "phase", "volume", "animation", "tensor"];
 
 /// The known word most like a misspelt one, if any is alike.
-pub(super) fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub(in crate::load) fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     // Older Mitsuba versions wrote `toWorld` for `to_world`.
     let folded = |s: &str| s.to_ascii_lowercase().replace(['_', '-'], "");
     let word = folded(word);
