@@ -64,6 +64,27 @@ fn a_lens_blurs_and_never_raises_radiance() {
     assert!((sum(&sharp) / sum(&pinhole) - 1.0).abs() < 5e-3, "{} {}", sum(&sharp), sum(&pinhole));
 }
 
+/// A grey square alone under a sky of radiance 1 sends its albedo, whether the sky is chosen as a light or found by
+/// a ray that leaves the square; hidden, it is black where the camera sees it.
+#[test]
+fn a_hidden_sky_still_lights() {
+    for integrator in [
+        Integrator::Path { max_depth: Some(3), rr_depth: 5, hide_emitters: true },
+        Integrator::Direct { hide_emitters: true },
+    ] {
+        let mut scene = lamp(Projection::Perspective { x_fov: 0.9 });
+        scene.integrator = integrator;
+        scene.shapes[0].radiance = None;
+        scene.materials = vec![Material::Diffuse { reflectance: Texture::Constant(Rgb::splat(0.5)) }];
+        scene.emitters = vec![Emitter::Constant { radiance: Rgb::ONE }];
+        let picture = rendered(&scene);
+        assert!(row(&picture, 1).iter().all(|&x| x == 0.0), "{:?}: {:?}", scene.integrator, row(&picture, 1));
+        let square: Vec<f32> = (12..20).flat_map(|y| row(&picture, y)[20..28].to_vec()).collect();
+        let mean = square.iter().sum::<f32>() / square.len() as f32;
+        assert!((mean - 0.5).abs() < 0.01, "{:?}: {mean}", scene.integrator);
+    }
+}
+
 type Curve = Box<dyn Fn(f64) -> f64>;
 
 /// Every filter with other parameters than its own, how far it reaches, and f at x ≥ 0.

@@ -8,11 +8,11 @@ use packlight::{
     compile::compile,
     load::{LoadOptions, load},
     picture::{Format, Picture, Preview, encode},
-    render::{Backend, Settings, render},
+    render::{Backend, Rendered, Settings, render},
 };
 
 /// A square that fills the middle of the picture, ten by ten of its forty by twenty pixels.
-fn picture(format: &str, integrator: &str, others: &str, backend: Backend) -> Picture {
+fn rendered(format: &str, integrator: &str, others: &str, backend: Backend) -> Rendered {
     let folder = tempfile::tempdir().expect("the folder for temporary files can be written");
     let path = folder.path().join("scene.xml");
     let text = format!(
@@ -28,7 +28,11 @@ fn picture(format: &str, integrator: &str, others: &str, backend: Backend) -> Pi
     let loaded = load(&path, &LoadOptions::default()).expect(format);
     assert!(loaded.warnings.is_empty(), "{}", loaded.warnings[0]);
     let scene = compile(&loaded.description).expect(format);
-    render(&scene, &Settings { backend, ..Settings::default() }, &|_| {}).picture
+    render(&scene, &Settings { backend, ..Settings::default() }, &|_| {})
+}
+
+fn picture(format: &str, integrator: &str, others: &str, backend: Backend) -> Picture {
+    rendered(format, integrator, others, backend).picture
 }
 
 const LAMP: &str = "<emitter type='directional'><vector name='direction' x='0.1' y='0.2' z='-1'/></emitter>";
@@ -87,4 +91,10 @@ fn colours_are_the_same_with_alpha_and_without() {
     for name in ["R", "G", "B"] {
         assert_eq!(plane(&with, name), plane(&without, name));
     }
+}
+
+#[test]
+fn rays_for_alpha_are_counted() {
+    let rays = |format: &str| rendered(format, "path", SKY, Backend::Packet).statistics.camera_rays;
+    assert_eq!((rays("rgb"), rays("rgba")), (40 * 20 * 64, 2 * 40 * 20 * 64));
 }

@@ -204,6 +204,41 @@ fn a_packet_beside_a_plane_of_a_box_does_not_lose_it() {
 }
 
 #[test]
+fn directions_have_any_length() {
+    for (name, description) in [("soup", scenes::soup(150)), ("mixed", scenes::mixed(50))] {
+        let some = rays_at(&targets(&description), 8, &mut Random::new(21));
+        let scaled = |factor: f32| {
+            let longer =
+                move |ray: &Ray| Ray::new(ray.org, ray.dir * factor, ray.t_near / factor, ray.t_far / factor);
+            some.iter()
+                .map(longer)
+                .filter(|ray| Ray32::new(ray.org, ray.dir, ray.t_near, ray.t_far).is_valid())
+        };
+        let rays: Vec<Ray> =
+            [1e-34, 1e-28, 1e-20, 1e-17, 1e-12, 1e-6, 1e8, 1e15].into_iter().flat_map(scaled).collect();
+        let seen = agree(&compile(&description).unwrap(), &rays);
+        assert!(seen.hits * 8 > seen.rays, "{name}: {seen:?}");
+    }
+}
+
+/// Along an axis at a corner that bounds a box, from where rounding leaves nothing else of a scene.
+#[test]
+fn origins_have_any_distance() {
+    for (name, description) in [("soup", scenes::soup(150)), ("mixed", scenes::mixed(50))] {
+        let mut rays = vec![];
+        for corner in targets(&description).iter().flatten() {
+            for (distance, axis) in [1e7, 1e13, 1e16].into_iter().flat_map(|d| [(d, 0), (d, 1), (d, 2)]) {
+                let (mut org, mut dir) = (*corner, Vec3::ZERO);
+                (org[axis], dir[axis]) = (distance, -1.0);
+                rays.push(Ray::new(org, dir, 0.0, f32::INFINITY));
+            }
+        }
+        let seen = agree(&compile(&description).unwrap(), &rays);
+        assert!(seen.hits * 8 > seen.rays, "{name}: {seen:?}");
+    }
+}
+
+#[test]
 fn the_bunny() {
     if let Some(path) = shared("meshes/stanford-bunny.obj") {
         let seen = check("bunny", &scenes::read(&path), 40);
@@ -236,6 +271,28 @@ fn scenes_of_one() {
         [("triangle", scenes::soup(1)), ("sphere", scenes::one_sphere()), ("two", scenes::soup(2))]
     {
         assert!(check(name, &description, 200).hits > 50);
+    }
+}
+
+/// What blocked rays in one tree says nothing about another, which may be smaller.
+#[test]
+fn a_tracer_goes_from_tree_to_tree() {
+    let [large, small] = [scenes::soup(2000), scenes::soup(2)].map(|scene| (compile(&scene).unwrap(), scene));
+    let some = |count| rays_at(&targets(&small.1), count, &mut Random::new(3));
+    // Each of many rays is blocked where the one before it was.
+    let [a, b, c] = targets(&large.1)[1999];
+    let again = vec![Ray::new(Vec3::splat(3.0), (a + b + c) / 3.0 - 3.0, 0.0, f32::INFINITY); 640];
+    let mut tracer = Tracer::new(());
+    for (scene, rays) in [(&large.0, &again), (&small.0, &some(60)), (&large.0, &again), (&small.0, &some(3))]
+    {
+        let stream: Vec<Ray32> =
+            rays.iter().map(|ray| Ray32::new(ray.org, ray.dir, ray.t_near, ray.t_far)).collect();
+        let mut blocked = vec![9; rays.len()];
+        scene.occluded_stream_by(&stream, &mut blocked, Way::Chosen, &mut tracer);
+        for (ray, blocked) in rays.iter().zip(blocked) {
+            let want = scene.brute_force(ray).primitive != PrimitiveId::NONE;
+            assert_eq!(blocked, u8::from(want), "{ray:?}");
+        }
     }
 }
 

@@ -149,4 +149,35 @@ mod tests {
         }
         assert!(hits > 50_000 && culled > 20_000, "{hits} hit, {culled} culled");
     }
+
+    /// Rays at edges and vertices, where products are all rounding: each term of the margin has a row in which it
+    /// is the greatest and decides.
+    #[test]
+    fn the_margin_covers_the_rounding_of_products() {
+        // Length of edges, distance of the origin from the first vertex, factor of directions.
+        let shapes = [(1e3, 1e6, 1.0), (1e-3, 10.0, 1.0), (1e4, 1.0, 1.0), (1e-17, 1e-17, 1e20)];
+        let mut random = Random::new(31);
+        for (edge, distance, factor) in shapes {
+            let mut hits = 0;
+            for _ in 0..4000 {
+                let org = random.vector() * distance;
+                let v0 = org + random.vector() * distance;
+                let triangle = Triangle::new(v0, v0 + random.vector() * edge, v0 + random.vector() * edge);
+                let [v0, v1, v2] = [triangle.v0, triangle.v1, triangle.v2].map(Vec3x8::splat);
+                let lanes = TriangleLanes { v0, v1, v2, edges: f32x8::splat(triangle.edges()) };
+                let planes = lanes.aspect(Vec3x8::splat(org)).edge_planes();
+                let along = 0.5 + 0.5 * random.signed();
+                for (u, v) in [(0.0, 0.0), (1.0, 0.0), (along, 0.0), (0.0, along), (along, 1.0 - along)] {
+                    let dir = (triangle.v0 + triangle.e1() * u + triangle.e2() * v - org) * factor;
+                    let ray = Ray::new(org, dir, f32::NEG_INFINITY, f32::INFINITY);
+                    if dir != Vec3::ZERO && triangle.intersect(&ray).is_some() {
+                        hits += 1;
+                        let pencils = Pencils::new(org, Vec3x8::splat(dir), Vec3x8::splat(dir));
+                        assert!(pencils.meet(&planes, 3).all(), "{triangle:?} from {org} along {dir}");
+                    }
+                }
+            }
+            assert!(hits > 4000, "{hits} hits of edges {edge} long");
+        }
+    }
 }

@@ -296,6 +296,18 @@ mod tests {
         assert_eq!(names(folder.path()), ["a.EXR"]);
     }
 
+    /// The old file is never written to, so whoever dies while saving leaves all of it.
+    #[test]
+    fn saving_puts_another_file_in_the_place_of_the_old_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let (path, same) = (folder.path().join("a.exr"), folder.path().join("same.exr"));
+        save(&picture(1, 1, |_| 1.0), &path, Preview::default()).unwrap();
+        fs::hard_link(&path, &same).unwrap();
+        save(&picture(1, 1, |_| 2.0), &path, Preview::default()).unwrap();
+        let first = |path| decode(path, Encoding::Raw).unwrap().channels[0].samples[0];
+        assert_eq!((first(&path), first(&same)), (2.0, 1.0));
+    }
+
     #[test]
     fn a_failed_save_leaves_nothing_behind() {
         let folder = tempfile::tempdir().unwrap();

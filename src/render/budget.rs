@@ -124,7 +124,7 @@ fn wavefront(description: &SceneDescription) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Film;
+    use crate::scene::{Film, Geometry, MaterialIndex, Shape};
 
     const CONDITIONS: Conditions = Conditions { quality: Quality::Medium, threads: 2, keeps_sums: false };
 
@@ -145,6 +145,20 @@ mod tests {
     }
 
     #[test]
+    fn a_channel_is_summed_drawn_and_written() {
+        // Three colours, a weight and a count; then each channel in the picture, in its copy and in the file.
+        assert_eq!(film_of(1, 10), 100 * (5 + 3 * 3) * 4);
+        let mut description = SceneDescription::default();
+        description.sensor.film = Film { format: PixelFormat::Rgba, ..Film::new(10, 10) };
+        description.sensor.sampler.sample_count = 1;
+        // Alpha is not summed with the colours.
+        assert_eq!(Budget::new(&description, &CONDITIONS).film - film_of(1, 10), 100 * 3 * 4);
+        // Sums that are kept are three times there besides.
+        let kept = Budget::new(&description, &Conditions { keeps_sums: true, ..CONDITIONS }).film;
+        assert_eq!(kept, 100 * (4 * 5 + 3 * 4) * 4);
+    }
+
+    #[test]
     fn a_peak_is_no_more_than_the_parts() {
         let budget = Budget::new(&SceneDescription::default(), &CONDITIONS);
         let parts: u64 = budget.parts().iter().map(|(_, bytes)| bytes).sum();
@@ -157,6 +171,19 @@ mod tests {
         let mut description = SceneDescription { emitters: vec![light; 1000], ..Default::default() };
         let one = Budget::new(&description, &CONDITIONS).wavefronts;
         description.integrator = Integrator::Direct { hide_emitters: false };
-        assert!(Budget::new(&description, &CONDITIONS).wavefronts > 50 * one);
+        let many = Budget::new(&description, &CONDITIONS).wavefronts;
+        assert!(many > 50 * one);
+        // A shape that shines is a light as any other.
+        let shape = Shape {
+            name: String::new(),
+            geometry: Geometry::Disk,
+            to_world: glam::DAffine3::IDENTITY,
+            flip_normals: false,
+            material: MaterialIndex(0),
+            radiance: Some(glam::Vec3::ONE),
+        };
+        description.emitters.truncate(300);
+        description.shapes = vec![shape; 700];
+        assert_eq!(Budget::new(&description, &CONDITIONS).wavefronts, many);
     }
 }

@@ -127,3 +127,23 @@ pub(super) trait Integrator: Sync {
     /// Rays that have hit something.
     fn shade<R: Real>(&self, scene: &Scene, vertex: &Vertex<'_, R>, out: &mut impl Outgoing<R>);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_number_is_drawn_twice_on_a_path() {
+        const PAIRS: u32 = 3;
+        let mut path = Path::<f32>::start(77, 5);
+        let mut seen = vec![path.on_film()];
+        for depth in 0..6 {
+            path.depth = depth;
+            for index in 0..PAIRS {
+                let pair = path.random(PAIRS, index);
+                assert!(!seen.contains(&pair), "pair {index} at depth {depth}");
+                seen.push(pair);
+            }
+        }
+    }
+}

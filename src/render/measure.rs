@@ -177,3 +177,19 @@ fn timed<T: Copy + Send + Sync>(
     let best = (0..repeat).map(|_| run()).min().unwrap_or_default();
     (results, best)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lanes_are_those_of_the_tests_that_were_run() {
+        let mut counts = Counts::default();
+        assert_eq!(counts.lane_use(), 0.0);
+        // Three of eight, seven of eight, two of eight: twelve of twenty-four.
+        counts.node(3);
+        counts.node(7);
+        counts += Counts { nodes: 0, primitives: 2, tests: 1 };
+        assert_eq!(counts.lane_use(), 0.5);
+    }
+}

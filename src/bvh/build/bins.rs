@@ -145,3 +145,57 @@ pub(super) fn cheapest_plane(references: &[Reference], centres: Bounds) -> Optio
     let bins = chunks.reduce(|| Bins::EMPTY, |a, b| a.merge(&b));
     bins.cheapest(&grid, references.len())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::binned::extents;
+    use super::*;
+    use crate::geometry::Aabb;
+
+    /// Boxes of all sizes here and there.
+    fn boxes(count: usize, seed: u32) -> Vec<Reference> {
+        let mut state = seed;
+        let mut unit = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as f32 / 16_777_216.0
+        };
+        let mut vector = || glam::Vec3::new(unit(), unit(), unit());
+        (0..count as u32)
+            .map(|index| {
+                let (corner, size) = (vector(), [0.0, 0.05, 0.6][index as usize % 3]);
+                let bounds = Aabb::of_points([corner, corner + vector() * size]);
+                Reference { bounds, index, class: 0 }
+            })
+            .collect()
+    }
+
+    /// Areas times numbers of what lies on either side, from the references themselves; `None` if all lie on one.
+    fn cost(references: &[Reference], plane: &Plane) -> Option<f32> {
+        let (left, right): (Vec<&Reference>, Vec<&Reference>) =
+            references.iter().partition(|reference| plane.is_left(reference));
+        let side = |references: &[&Reference]| {
+            let bounds = references.iter().fold(Bounds::EMPTY, |a, reference| a.union(reference.bounds()));
+            bounds.half_area() * references.len() as f32
+        };
+        (!left.is_empty() && !right.is_empty()).then(|| side(&left) + side(&right))
+    }
+
+    #[test]
+    fn no_other_plane_between_bins_is_cheaper() {
+        for seed in 0..200 {
+            let references = boxes([2, 3, 17, 100, 700][seed as usize % 5], seed);
+            let [_, centres] = extents(&references);
+            let (grid, found) = (Grid::new(centres), cheapest_plane(&references, centres).expect("a plane"));
+            let found_cost = cost(&references, &found).expect("something on either side");
+            let left = references.iter().filter(|reference| found.is_left(reference)).count();
+            assert_eq!(left, found.left_count);
+            for (axis, bin) in (0..3).flat_map(|axis| (1..BINS).map(move |bin| (axis, bin))) {
+                let end = 1.0 + bin as f32 / BINS as f32;
+                let other = Plane { axis, origin: grid.origin[axis], scale: grid.scale[axis], end, ..found };
+                if let Some(cost) = cost(&references, &other) {
+                    assert!(found_cost <= cost * 1.0001, "{found_cost}, at bin {bin} of axis {axis} {cost}");
+                }
+            }
+        }
+    }
+}

@@ -165,3 +165,49 @@ impl Sweep {
         run.iter().take_while(|&&i| self.class(i) == self.class(run[0])).count()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Aabb;
+
+    /// Areas times numbers, where so many go left in the order of the centres along an axis.
+    fn cost(references: &[Reference], axis: usize, left_count: usize) -> f32 {
+        let mut ordered: Vec<&Reference> = references.iter().collect();
+        ordered.sort_by(|a, b| a.centre(axis).total_cmp(&b.centre(axis)));
+        let side = |references: &[&Reference]| {
+            let bounds = references.iter().fold(Bounds::EMPTY, |a, reference| a.union(reference.bounds()));
+            bounds.half_area() * references.len() as f32
+        };
+        let (left, right) = ordered.split_at(left_count);
+        side(left) + side(right)
+    }
+
+    #[test]
+    fn no_other_split_between_centres_is_cheaper() {
+        let mut state = 7u32;
+        let mut unit = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as f32 / 16_777_216.0
+        };
+        let mut vector = || glam::Vec3::new(unit(), unit(), unit());
+        for round in 0..2000 {
+            let count = 2 + round % (SMALL - 1);
+            let references: Vec<Reference> = (0..count as u32)
+                .map(|index| {
+                    let corner = vector();
+                    let bounds = Aabb::of_points([corner, corner + vector() * [0.02, 0.9][round % 2]]);
+                    Reference { bounds, index, class: 0 }
+                })
+                .collect();
+            let mut all = [references[0]; SMALL];
+            all[..count].copy_from_slice(&references);
+            let (told, axis, left_count) = Sweep::new(&all, count).cheapest(0, count).expect("a split");
+            let found = cost(&references, axis, left_count);
+            assert!((told - found).abs() <= 1e-4 * found, "{told} for what costs {found}");
+            for (axis, left_count) in (0..3).flat_map(|axis| (1..count).map(move |left| (axis, left))) {
+                assert!(found <= cost(&references, axis, left_count) * 1.0001);
+            }
+        }
+    }
+}

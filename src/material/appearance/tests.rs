@@ -221,3 +221,18 @@ fn lanes_equal_scalar() {
         }
     }
 }
+
+/// The other way round, the normal points the other way and the tangents stay; what was hidden stays hidden.
+#[test]
+fn a_leaning_view_turns_about_its_tangents() {
+    let mut random = proof::Random::new(13);
+    for _ in 0..200 {
+        let frame = Frame::<f32>::around(random.direction(false).into());
+        let view = View::Leaning { frame, parity: 1.0, spread: 0.1 };
+        let (w, turned) = (Vector3::from(random.direction(true)), view.turned(-1.0));
+        let (before, after) = (view.to_model(w), turned.to_model(w));
+        assert_eq!((after.x, after.y, after.z), (before.x, before.y, -before.z));
+        assert!((Vec3::from(turned.to_surface(after)) - Vec3::from(w)).length() < 1e-5);
+        assert_eq!(turned.agrees(w, after), view.agrees(w, before));
+    }
+}

@@ -34,6 +34,24 @@ fn a_model_comes_back_from_its_table() {
     }
 }
 
+/// What turns with cos 2φ_d: where the half vector is the normal, φ_d is the azimuth.
+#[test]
+fn values_stand_at_their_azimuths() {
+    let about = |phi: f32| 1.0 + 0.5 * (2.0 * phi).cos();
+    let table = MerlTable::tabulate(|wo, wi| {
+        let (_, _, phi) = angles::<f32>((wo + wi).normalize().into(), wi.into());
+        Vec3::splat(about(phi))
+    });
+    let measured = Measured { table: &table };
+    for step in 0..1440 {
+        let (phi, (sin, cos)) = ((step as f32 * 0.25).to_radians(), 40f32.to_radians().sin_cos());
+        let wi = Vec3::new(sin * phi.cos(), sin * phi.sin(), cos);
+        let wo = Vec3::new(-wi.x, -wi.y, wi.z);
+        let got = measured.eval::<f32>(wo.into(), wi.into()).x / wi.z;
+        assert!((got - about(phi)).abs() < 3e-3, "{}°: {got}, not {}", phi.to_degrees(), about(phi));
+    }
+}
+
 #[test]
 fn a_constant_is_a_constant_everywhere() {
     let white = Bsdf::Lambert(Lambert { reflectance: Vec3::ONE.into() });

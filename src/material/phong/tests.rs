@@ -75,3 +75,19 @@ fn the_plain_form_is_not_reciprocal() {
     assert!((there / back - a.z / b.z).abs() < 1e-3, "{there} {back}");
     assert!((there - back).abs() > 0.2 * there, "{there} {back}");
 }
+
+/// Seen from the normal: a lobe about it, (n + 1)/2π cosⁿθ, and the cosine's, each chosen by its part of the albedos.
+#[test]
+fn each_lobe_is_chosen_by_its_part_of_the_albedos() {
+    let wi = proof::at(35.0);
+    let glossy = 6.0 / std::f32::consts::TAU * wi.z.powi(5);
+    let diffuse = wi.z / std::f32::consts::PI;
+    let black = Vec3::ZERO;
+    for (of_diffuse, of_specular, share) in
+        [(Vec3::ONE, black, 0.0), (black, Vec3::ONE, 1.0), (Vec3::splat(0.1), Vec3::splat(0.3), 0.75)]
+    {
+        let pdf: f32 = phong(of_diffuse, of_specular, 5.0).pdf(Vec3::Z.into(), wi.into());
+        let want = share * glossy + (1.0 - share) * diffuse;
+        assert!((pdf - want).abs() < 1e-5 * want, "{pdf}, not {want}");
+    }
+}

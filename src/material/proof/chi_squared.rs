@@ -187,6 +187,9 @@ fn erfc(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::material::Sample;
+    use crate::math::warp;
+    use crate::simd::{Mask8, f32x8};
 
     #[test]
     fn tails_are_those_of_tables() {
@@ -205,5 +208,71 @@ mod tests {
         for tests in [2, 7, 100] {
             assert!((1.0 - (1.0 - sidak(0.01, tests)).powi(tests as i32) - 0.01).abs() < 1e-12);
         }
+    }
+
+    /// Draws by the cosine, of one side or of both, and says that its density is something else.
+    struct Claims {
+        density: fn(f32) -> f32,
+        both: bool,
+        /// Of the samples, how many carry light.
+        valid: f32,
+    }
+
+    fn cosine(z: f32) -> f32 {
+        z.abs() / std::f32::consts::PI
+    }
+
+    impl Reflector<f32x8> for Claims {
+        fn eval_pdf(&self, _: Vector3<f32x8>, wi: Vector3<f32x8>) -> (Vector3<f32x8>, f32x8) {
+            let pdf = f32x8::from_fn(|i| (self.density)(wi.z.lane(i)));
+            (wi.map(|_| pdf), pdf)
+        }
+
+        fn sample(&self, _: Vector3<f32x8>, lobe: f32x8, (u, v): (f32x8, f32x8)) -> Sample<f32x8> {
+            let w = warp::cosine_hemisphere(u, v);
+            let below = lobe.lt(f32x8::splat(0.5)) & Mask8::splat(self.both);
+            let wi = Vector3 { z: f32x8::select(below, -w.z, w.z), ..w };
+            let (one, valid) = (f32x8::one(), lobe.lt(f32x8::splat(self.valid)));
+            Sample { wi, weight: wi, pdf: one, eta: one, delta: Mask8::splat(false), valid }
+        }
+
+        fn transmits(&self) -> bool {
+            self.both
+        }
+    }
+
+    fn fit(density: fn(f32) -> f32, both: bool, valid: f32) -> Fit {
+        Fit::new(&Claims { density, both, valid }, Vec3::Z, 80_000, 11)
+    }
+
+    #[test]
+    fn what_is_drawn_as_it_is_said_fits() {
+        for (fit, valid) in [
+            (fit(cosine, false, 1.0), 1.0),
+            (fit(|z| 0.5 * cosine(z), true, 1.0), 1.0),
+            (fit(|z| 0.75 * cosine(z), false, 0.75), 0.75),
+        ] {
+            assert!(fit.p > 1e-3 && fit.p < 0.999, "{fit:?}");
+            assert!((fit.density - valid).abs() < 1e-3 && fit.excess() < 1e-6, "{fit:?}");
+            assert!((fit.lost - (1.0 - valid)).abs() < 0.01 && fit.lost + fit.share == 1.0, "{fit:?}");
+            // χ² is about as large as its degrees of freedom, one less than there are bins with enough samples.
+            assert!(fit.freedom > 550.0 && fit.freedom <= 600.0, "{fit:?}");
+            assert!((fit.chi_squared / fit.freedom - 1.0).abs() < 0.2, "{fit:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_drawn_otherwise_does_not() {
+        // Uniform; a tenth too little; nothing where much is drawn.
+        let densities: [fn(f32) -> f32; 3] = [
+            |_| 0.5 / std::f32::consts::PI,
+            |z| 0.9 * cosine(z),
+            |z| if z > 0.5 { cosine(z) / 0.75 } else { 0.0 },
+        ];
+        for density in densities {
+            let fit = fit(density, false, 1.0);
+            assert!(fit.p < 1e-9 && fit.chi_squared > 2.0 * fit.freedom, "{fit:?}");
+        }
+        assert!(fit(densities[1], false, 1.0).excess() > 0.09);
     }
 }

@@ -137,3 +137,43 @@ impl Worst {
         self
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::Sample;
+    use crate::math::INV_PI;
+    use crate::simd::f32x8;
+
+    /// Diffuse, times a power of the viewer's cosine.
+    struct Leaning(bool);
+
+    impl Reflector<f32x8> for Leaning {
+        fn eval_pdf(&self, wo: Vector3<f32x8>, wi: Vector3<f32x8>) -> (Vector3<f32x8>, f32x8) {
+            let pdf = wi.z * f32x8::splat(INV_PI);
+            let value = if self.0 { pdf * wo.z } else { pdf };
+            (wi.map(|_| value), pdf)
+        }
+
+        fn sample(&self, wo: Vector3<f32x8>, _: f32x8, _: (f32x8, f32x8)) -> Sample<f32x8> {
+            let (one, none) = (f32x8::one(), Mask::splat(false));
+            Sample { wi: wo, weight: wo, pdf: one, eta: one, delta: none, valid: none }
+        }
+
+        fn transmits(&self) -> bool {
+            false
+        }
+    }
+
+    #[test]
+    fn every_pair_is_looked_at() {
+        let fair = reciprocity(&Leaning(false), 4000, 1e-4, 3);
+        assert_eq!((fair.lit, fair.broken), (4000, 0), "{fair:?}");
+        assert!(fair.difference < 1e-5, "{fair:?}");
+        // cos θ_o and cos θ_i are rarely the same; their relative difference is nearly 1 somewhere.
+        let leaning = reciprocity(&Leaning(true), 4000, 1e-4, 3);
+        assert!(leaning.lit > 3900 && leaning.broken > 3900, "{leaning:?}");
+        assert!(leaning.difference > 0.9 && leaning.difference <= 1.0, "{leaning:?}");
+        assert!(leaning.a.z != leaning.b.z);
+    }
+}
