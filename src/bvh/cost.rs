@@ -26,7 +26,10 @@ impl Cost {
     pub(super) const PACKET_CHILD: Self = Self(30.0);
     /// How much more packets cost whose nodes are far away in memory, or whose rays are scattered: they wait for
     /// one node after the other.
-    pub(super) const FAR: u32 = 2;
+    pub(super) const FAR: f32 = 2.0;
+    /// How much more runs of occlusion rays cost together: rays end one by one, and those that are left go on in
+    /// lanes of their own.
+    pub(super) const OCCLUSION: f32 = 1.6;
     /// A ray on its own, its nodes, and its blocks.
     pub(super) const RAY: Self = Self(50.0);
     pub(super) const RAY_NODE: Self = Self(28.0);
@@ -37,6 +40,13 @@ impl Mul<u32> for Cost {
     type Output = Self;
     fn mul(self, times: u32) -> Self {
         Self(self.0 * times as f32)
+    }
+}
+
+impl Mul<f32> for Cost {
+    type Output = Self;
+    fn mul(self, factor: f32) -> Self {
+        Self(self.0 * factor)
     }
 }
 

@@ -5,6 +5,7 @@ use super::{
     bundle::{BUNDLE, Grouping},
     cost::Cost,
     entry::Segments,
+    habit::{Coherence, Habit},
     occluder::Occluder,
 };
 use crate::geometry::{Ray, RayLanes, Rayx8, Rayx16};
@@ -21,12 +22,6 @@ const TILE_SPREAD: f32 = 0.35;
 /// Occlusion rays up to this one may go as packets: most are blocked after a few nodes, which a wave can't
 /// make up for its setting up.
 const PACKET_SPREAD: f32 = 1.2;
-/// One run in so many goes the way that has cost more, to see whether it still does; in twice as many if that
-/// has cost twice as much.
-const PROBE: u32 = 64;
-
-/// The same for scattered rays, which packets seldom suit.
-const PROBE_SCATTERED: u32 = 512;
 
 /// Up to sixty-four neighbours, in [places](Grouping).
 pub(super) struct Run {
@@ -126,9 +121,9 @@ impl Run {
         segments.bounds(bvh.reach()).map(|bounds| bvh.entry(bounds))
     }
 
-    /// The diagonal of the box around the directions, in lengths of its middle; `None` if they point into
-    /// several octants.
-    fn spread(&self) -> Option<f32> {
+    /// The diagonal of the box around the directions, in lengths of its middle, and whether they point into one
+    /// octant.
+    fn spread(&self) -> (f32, bool) {
         let (mut low, mut high) =
             (Vec3x16::splat(glam::Vec3::INFINITY), Vec3x16::splat(glam::Vec3::NEG_INFINITY));
         if self.is_whole() {
@@ -152,16 +147,15 @@ impl Run {
         // Six minima over lanes by one transposition.
         let [low, high] = [low, -high].map(|v| [v.x, v.y, v.z]);
         let rows = transpose([low[0], low[1], low[2], low[2], high[0], high[1], high[2], high[2]]);
-        let [lx, ly, lz, _, hx, hy, hz, _] = rows.into_iter().reduce(Real::min)?.to_array();
-        let (mut diagonal, mut length) = (0.0, 0.0);
+        let least = rows.into_iter().reduce(Real::min).unwrap_or_default();
+        let [lx, ly, lz, _, hx, hy, hz, _] = least.to_array();
+        let (mut diagonal, mut length, mut one_octant) = (0.0, 0.0, true);
         for (low, high) in [(lx, -hx), (ly, -hy), (lz, -hz)] {
-            if low < 0.0 && high > 0.0 {
-                return None;
-            }
+            one_octant &= low >= 0.0 || high <= 0.0;
             diagonal += (high - low) * (high - low);
             length += (high + low) * (high + low) * 0.25;
         }
-        Some((diagonal / length).sqrt())
+        ((diagonal / length).sqrt(), one_octant)
     }
 }
 
@@ -175,39 +169,13 @@ pub(super) struct Runs {
     forced: Way,
     /// The ways of those that are loaded and have not been taken.
     waiting: [Option<Way>; 2],
-    /// Do they point into one octant and spread little?
-    coherent: [bool; 2],
+    /// How their rays lie together.
+    coherence: [Coherence; 2],
     /// Is the tree one that scattered rays had better go through alone?
     far: bool,
-    /// What has been learnt from closest hits and from occlusion, of scattered rays and of coherent ones.
-    habits: [[Habit; 2]; 2],
+    /// What has been learnt from closest hits and from occlusion, of each kind of rays.
+    habits: [[Habit; Coherence::COUNT]; 2],
     pub(super) occluder: Occluder,
-}
-
-/// What a ray cost lately; 0 before anything is known.
-#[derive(Clone, Copy, Debug, Default)]
-struct Habit {
-    together: f32,
-    alone: f32,
-    turn: u32,
-}
-
-impl Habit {
-    fn choose_together(&mut self, probe: u32) -> bool {
-        let (less, more) = (self.together.min(self.alone), self.together.max(self.alone));
-        let cheaper = less == 0.0 || self.together <= self.alone;
-        // The dearer the other way, the less often it is worth a try.
-        self.turn += 1;
-        if self.turn as f32 * less < probe as f32 * more {
-            return cheaper;
-        }
-        self.turn = 0;
-        !cheaper
-    }
-}
-
-fn blend(lately: &mut f32, now: f32) {
-    *lately = if *lately == 0.0 { now } else { 0.75 * *lately + 0.25 * now };
 }
 
 impl Default for Runs {
@@ -221,9 +189,9 @@ impl Default for Runs {
             grouping: Grouping::Rows,
             forced: Way::Chosen,
             waiting: [None; 2],
-            coherent: [false; 2],
+            coherence: [Coherence::Scattered; 2],
             far: false,
-            habits: [[Habit::default(); 2]; 2],
+            habits: [[Habit::default(); Coherence::COUNT]; 2],
             occluder: Occluder::default(),
         }
     }
@@ -247,7 +215,7 @@ impl Runs {
             if self.waiting[1].is_some() {
                 self.run.swap(0, 1);
                 self.waiting.swap(0, 1);
-                self.coherent.swap(0, 1);
+                self.coherence.swap(0, 1);
             } else {
                 self.load::<ANY, L, S, T>(0, leaves, stream, tally);
             }
@@ -301,38 +269,41 @@ impl Runs {
         &self.run[..1 + usize::from(together)]
     }
 
-    /// The kind of the run that was looked at: bit 0 if it is scattered, bit 1 if it is coherent.
+    /// The [`Coherence`] of the run that was looked at, as a set.
     pub(super) fn kind(&self) -> u32 {
-        1 << u32::from(self.coherent[0])
+        self.coherence[0].bit()
     }
 
     /// Remembers what the run that was taken cost as a tile or as packets.
     pub(super) fn learn_together<const ANY: bool>(&mut self, cost: Cost, rays: usize) {
-        let habit = &mut self.habits[usize::from(ANY)][usize::from(self.coherent[0])];
-        let cost = if self.coherent[0] { cost } else { cost * Cost::FAR };
-        blend(&mut habit.together, cost.0 / rays as f32);
+        let coherence = self.coherence[0];
+        let cost = if coherence == Coherence::Scattered { cost * Cost::FAR } else { cost };
+        let cost = if ANY { cost * Cost::OCCLUSION } else { cost };
+        self.habits[usize::from(ANY)][coherence as usize].learn_together(cost.0 / rays as f32);
     }
 
     /// Remembers what rays of some kinds cost in a wave.
     pub(super) fn learn_alone<const ANY: bool>(&mut self, cost: Cost, rays: u32, kinds: u32) {
-        for (bit, habit) in self.habits[usize::from(ANY)].iter_mut().enumerate() {
-            if kinds >> bit & 1 != 0 {
-                blend(&mut habit.alone, cost.0 / rays as f32);
+        for (kind, habit) in self.habits[usize::from(ANY)].iter_mut().enumerate() {
+            if rays > 0 && kinds >> kind & 1 != 0 {
+                habit.learn_alone(cost.0 / rays as f32);
             }
         }
     }
 
     fn choose<const ANY: bool>(&mut self, which: usize) -> Way {
-        let limit = if ANY { PACKET_SPREAD } else { TILE_SPREAD };
-        let coherent = self.run[which].spread().is_some_and(|spread| spread <= limit);
-        self.coherent[which] = coherent;
-        if !coherent && self.far {
+        let coherence = match self.run[which].spread() {
+            (spread, true) if spread <= if ANY { PACKET_SPREAD } else { TILE_SPREAD } => Coherence::Coherent,
+            (spread, _) if !ANY && spread <= TILE_SPREAD => Coherence::Straddling,
+            _ => Coherence::Scattered,
+        };
+        self.coherence[which] = coherence;
+        if coherence == Coherence::Scattered && self.far {
             return Way::Wave;
         }
-        let probe = if coherent { PROBE } else { PROBE_SCATTERED };
-        if !self.habits[usize::from(ANY)][usize::from(coherent)].choose_together(probe) {
+        if !self.habits[usize::from(ANY)][coherence as usize].choose_together(coherence) {
             Way::Wave
-        } else if coherent && !ANY {
+        } else if coherence == Coherence::Coherent && !ANY {
             Way::Tile
         } else {
             Way::Packet

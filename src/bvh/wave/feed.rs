@@ -115,9 +115,11 @@ pub(super) struct Feed {
     waiting: u64,
     /// Where occlusion rays of the run start, if not at the root.
     entry: Option<Node>,
-    /// Rays since the wave began, and their [kinds](Runs::kind).
-    rays: u32,
+    /// Rays that were answered at once since this was last asked, and the [kinds](Runs::kind) of all.
+    answered: u32,
     kinds: u32,
+    /// The kind of the run that is handed out.
+    kind: u32,
 }
 
 impl Default for Feed {
@@ -126,16 +128,23 @@ impl Default for Feed {
             ready: Box::new([[Ready::NOTHING; LANES]; PACKETS]),
             waiting: 0,
             entry: None,
-            rays: 0,
+            answered: 0,
             kinds: 0,
+            kind: 0,
         }
     }
 }
 
 impl Feed {
-    /// How many rays have come since this was last asked, and of which kinds.
-    pub(super) fn take_count(&mut self) -> (u32, u32) {
-        (std::mem::take(&mut self.rays), std::mem::take(&mut self.kinds))
+    /// A wave begins.
+    pub(super) fn begin(&mut self) {
+        (self.answered, self.kinds, self.kind) = (0, 0, 0);
+    }
+
+    /// How many rays have been answered since this was last asked, with those that the wave answered, and of
+    /// which kinds.
+    pub(super) fn take_count(&mut self, ended: u32) -> (u32, u32) {
+        (std::mem::take(&mut self.answered) + ended, std::mem::replace(&mut self.kinds, self.kind))
     }
 
     /// Starts the next ray in a slot; false if there is none, or if the next run goes another way. Rays that
@@ -167,9 +176,9 @@ impl Feed {
     }
 
     fn refill<const ANY: bool, S: Stream>(&mut self, bvh: &Bvh, stream: &mut S, runs: &mut Runs) {
-        self.kinds |= runs.kind();
+        self.kind = runs.kind();
+        self.kinds |= self.kind;
         let run = runs.take();
-        self.rays += run.there().count_ones();
         self.entry = if ANY { run.entry(bvh) } else { None };
         let nowhere = self.entry.as_ref().is_some_and(|node| node.children[0] == Child::ABSENT);
         if !nowhere && !bvh.nodes.is_empty() {
@@ -183,6 +192,7 @@ impl Feed {
         self.waiting &= run.there();
         let blocked = run.blocked;
         let mut never = run.there() & !self.waiting;
+        self.answered += never.count_ones();
         while never != 0 {
             let which = never.trailing_zeros() as usize;
             let hit = if blocked >> which & 1 != 0 { Hit::BLOCKED } else { Hit::MISS };

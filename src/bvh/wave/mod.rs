@@ -10,7 +10,11 @@
 mod feed;
 mod slot;
 
-use super::{Bvh, Child, Leaves, Stream, Tally, cost::Cost, run::Runs};
+use super::{
+    Bvh, Child, Leaves, Stream, Tally,
+    cost::Cost,
+    run::{RUN, Runs},
+};
 use feed::Feed;
 use slot::Slot;
 
@@ -100,9 +104,10 @@ impl Bvh {
         tally: &mut T,
     ) {
         let Wave { slots, feed } = wave;
+        feed.begin();
         let (mut nodes, mut sets) = (0, Sets { leaves: ALL, done: ALL });
         let mut fresh = true;
-        let (mut steps, mut blocks) = (0, 0);
+        let (mut steps, mut blocks, mut ended) = (0, 0, 0);
         while nodes | sets.leaves != 0 {
             steps += nodes.count_ones();
             sets = self.pass_nodes::<ANY, ASK, L, T>(leaves, slots, nodes, sets, tally);
@@ -116,6 +121,7 @@ impl Bvh {
             let done = std::mem::take(&mut sets.done);
             sets.leaves &= !done;
             let mut started = 0;
+            ended += if fresh { 0 } else { done.count_ones() };
             for which in each(done) {
                 let slot = &mut slots[which];
                 if !fresh {
@@ -128,11 +134,13 @@ impl Bvh {
             }
             nodes |= sets.nodes(started);
             fresh = false;
-        }
-        let (rays, kinds) = feed.take_count();
-        if rays > 0 {
-            let cost = Cost::RAY * rays + Cost::RAY_NODE * steps + Cost::RAY_BLOCK * blocks;
-            runs.learn_alone::<ANY>(cost, rays, kinds);
+            // As it goes on, not when it ends: what is learnt says whether the next run joins it.
+            if ended >= RUN as u32 || nodes | sets.leaves == 0 {
+                let (rays, kinds) = feed.take_count(std::mem::take(&mut ended));
+                let cost = Cost::RAY * rays + Cost::RAY_NODE * steps + Cost::RAY_BLOCK * blocks;
+                runs.learn_alone::<ANY>(cost, rays, kinds);
+                (steps, blocks) = (0, 0);
+            }
         }
     }
 
