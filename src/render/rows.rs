@@ -7,7 +7,7 @@ use bumpalo::{Bump, collections::Vec as BumpVec};
 
 use super::integrator::Path;
 use crate::geometry::{Hit, PrimitiveId, RayLanes};
-use crate::simd::{Bits, LANES, Real, Vec3x8, compress, f32x8, transpose, u32x8, vector3};
+use crate::simd::{Bits, LANES, Mask, Real, Vec3x8, compress, f32x8, transpose, u32x8, vector3};
 
 /// Eight numbers a slot. Lengths are padded to whole packets.
 pub(super) type Rows<'a> = BumpVec<'a, f32x8>;
@@ -60,6 +60,8 @@ pub(super) struct Paths<'a> {
     worth: Rows<'a>,
     /// For each slot the place of its rows.
     places: BumpVec<'a, u32>,
+    /// For each slot its octant and its place, while they are ordered.
+    octants: BumpVec<'a, (u8, u32)>,
     /// Slots in use.
     pub(super) len: usize,
 }
@@ -67,7 +69,8 @@ pub(super) struct Paths<'a> {
 impl<'a> Paths<'a> {
     pub(super) fn new(arena: &'a Bump) -> Self {
         let rows = || BumpVec::new_in(arena);
-        Self { rays: rows(), worth: rows(), places: BumpVec::new_in(arena), len: 0 }
+        let (places, octants) = (BumpVec::new_in(arena), BumpVec::new_in(arena));
+        Self { rays: rows(), worth: rows(), places, octants, len: 0 }
     }
 
     /// Makes room for so many paths.
@@ -128,8 +131,36 @@ impl<'a> Paths<'a> {
             self.len += lanes.count_ones() as usize;
             places = places.wrapping_add(u32x8::splat(LANES as u32));
         }
+        self.fill_up();
+    }
+
+    /// Slots behind the last name its place.
+    fn fill_up(&mut self) {
         let last = self.len.checked_sub(1).map_or(0, |last| self.places[last]);
         self.places[self.len..self.len + LANES].fill(last);
+    }
+
+    /// Gives neighbouring slots to paths that point into the same octant, in order within each. Packets of rays
+    /// that point into one octant meet less of a scene, and each box of it with fewer operations.
+    pub(super) fn order_by_octant(&mut self) {
+        let Self { rays, places, octants, len, .. } = self;
+        let mut starts = [0; 8];
+        octants.clear();
+        octants.extend(places[..*len].iter().map(|&place| {
+            let octant = (rays[place as usize].lt(f32x8::zero()).to_bitmask() >> 3) as u8 & 7;
+            starts[octant as usize] += 1;
+            (octant, place)
+        }));
+        let mut start = 0;
+        for count in &mut starts {
+            start += std::mem::replace(count, start);
+        }
+        for &(octant, place) in octants.iter() {
+            let slot = &mut starts[octant as usize % 8];
+            places[*slot] = place;
+            *slot += 1;
+        }
+        self.fill_up();
     }
 }
 
@@ -243,6 +274,33 @@ mod tests {
         assert_eq!(paths.rays(0).org.x.to_array(), org);
         paths.keep(&[false; 24]);
         assert_eq!(paths.len, 0);
+    }
+
+    #[test]
+    fn paths_are_ordered_by_octant_and_stay_in_order_within_each() {
+        let arena = Bump::new();
+        let mut paths = Paths::new(&arena);
+        paths.reserve(24);
+        let sign = |lane: usize, bit: usize| if (lane * 5 % 8) >> bit & 1 != 0 { -1.0 } else { 1.0 };
+        for first in [0, 8, 16] {
+            let dir = vector3(
+                f32x8::from_fn(|i| sign(i, 0)),
+                f32x8::from_fn(|i| sign(i, 1)),
+                f32x8::from_fn(|i| sign(i, 2)),
+            );
+            let at = std::array::from_fn::<_, LANES, _>(|i| first + i as u32);
+            paths.store(&at, &Packet { dir, pixel: u32x8::from_fn(|i| at[i]), ..packet(0) });
+        }
+        let alive: Vec<bool> = (0..24).map(|slot| slot < 21 && slot % 7 != 2).collect();
+        paths.keep(&alive);
+        paths.order_by_octant();
+        let found: Vec<usize> = (0..paths.len).map(|slot| paths.pixel(slot)).collect();
+        let mut expected: Vec<usize> = (0..24).filter(|&slot| alive[slot]).collect();
+        expected.sort_by_key(|slot| slot % 8 * 5 % 8);
+        assert_eq!(found, expected);
+        // Lanes behind the last hold it, too.
+        let last = paths.rays(paths.len.next_multiple_of(LANES) - LANES);
+        assert_eq!(last.dir.lane(7), last.dir.lane((paths.len - 1) % LANES));
     }
 
     #[test]

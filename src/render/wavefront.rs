@@ -189,6 +189,10 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             let places = (self.paths.len * self.out.branches).next_multiple_of(LANES);
             std::mem::swap(&mut self.paths, &mut self.out.next);
             self.paths.keep(&self.out.alive[..places]);
+            // What several paths bring to one pixel is added in the order of slots.
+            if self.out.branches == 1 {
+                self.paths.order_by_octant();
+            }
             statistics.spend(Stage::Add, start);
             depth += 1;
         }
