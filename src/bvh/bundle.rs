@@ -94,10 +94,25 @@ impl Grouping {
 }
 
 impl Hitx16 {
+    /// The hits of one of its packets.
+    #[inline(always)]
+    pub fn half(&self, i: usize) -> Hitx8 {
+        let primitive = self.primitive.half(i);
+        HitLanes { t: self.t.half(i), u: self.u.half(i), v: self.v.half(i), primitive }
+    }
+
+    /// Replaces the hits of one of its packets.
+    #[inline(always)]
+    pub fn put_half(&mut self, i: usize, hits: &Hitx8) {
+        self.t.put_half(i, hits.t);
+        self.u.put_half(i, hits.u);
+        self.v.put_half(i, hits.v);
+        self.primitive.put_half(i, hits.primitive);
+    }
+
     /// The hits of its two packets.
     pub fn halves(&self) -> [Hitx8; 2] {
-        let [id, t, u, v] = [f32x16::from_bits(self.primitive), self.t, self.u, self.v].map(f32x16::halves);
-        [0, 1].map(|i| HitLanes { t: t[i], u: u[i], v: v[i], primitive: id[i].to_bits() })
+        [self.half(0), self.half(1)]
     }
 
     /// Two packets' hits.

@@ -6,6 +6,11 @@ const PROBE: u32 = 64;
 /// The same for scattered rays, which packets seldom suit.
 const PROBE_SCATTERED: u32 = 512;
 
+/// Runs that a way is kept for once it is taken, unless the other is found to be cheaper by far: a wave is filled
+/// and drained, and where both cost the same each run would change the way.
+const SETTLE: u32 = 16;
+const BY_FAR: f32 = 1.5;
+
 /// How rays lie together. What suits the ones says nothing of the others, so each kind has its [`Habit`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Coherence {
@@ -36,22 +41,35 @@ pub(super) struct Habit {
     alone: f32,
     /// Was the last cost to be learnt one of rays that went alone?
     was_alone: bool,
+    /// The way that is taken, and runs since it is.
+    goes_alone: bool,
+    settled: u32,
+    /// Runs since the other way was tried.
     turn: u32,
 }
 
 impl Habit {
     /// Whether the next run goes together.
     pub(super) fn choose_together(&mut self, coherence: Coherence) -> bool {
-        let probe = if coherence == Coherence::Scattered { PROBE_SCATTERED } else { PROBE };
+        if self.together == 0.0 || self.alone == 0.0 {
+            return self.together == 0.0;
+        }
         let (less, more) = (self.together.min(self.alone), self.together.max(self.alone));
-        let cheaper = less == 0.0 || self.together <= self.alone;
+        self.settled += 1;
+        if self.settled > SETTLE || more > less * BY_FAR {
+            let alone = self.alone < self.together;
+            if std::mem::replace(&mut self.goes_alone, alone) != alone {
+                self.settled = 0;
+            }
+        }
         // The dearer the other way, the less often it is worth a try.
+        let probe = if coherence == Coherence::Scattered { PROBE_SCATTERED } else { PROBE };
         self.turn += 1;
         if self.turn as f32 * less < probe as f32 * more {
-            return cheaper;
+            return !self.goes_alone;
         }
         self.turn = 0;
-        !cheaper
+        self.goes_alone
     }
 
     /// Remembers what a ray cost together with others.

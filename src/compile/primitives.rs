@@ -256,8 +256,7 @@ impl Leaves for Primitives {
         self.intersect_lanes::<ANY, f32x16>(first, count, ray, active, hit, |slot, hit| {
             let mut halves = hit.halves();
             for (half, hit) in halves.iter_mut().enumerate() {
-                let active = Mask8::from_bitmask(active.to_bitmask() >> (half * 8) & 0xff);
-                self.instances.intersect_packet::<ANY>(slot, &ray.half(half), active, hit);
+                self.instances.intersect_packet::<ANY>(slot, &ray.half(half), active.half(half), hit);
             }
             *hit = Hitx16::of_halves(halves);
         });
@@ -293,13 +292,8 @@ impl Leaves for Primitives {
             while left != 0 {
                 let bundle = left.trailing_zeros() as usize % 8;
                 left &= left - 1;
-                block.intersect::<ANY, f32x16>(
-                    (lane, id),
-                    (&aspects.splat(lane), f32x16::splat(margin)),
-                    rays[bundle],
-                    every,
-                    &mut hits[bundle],
-                );
+                let seen = (&aspects, margin);
+                block.intersect_bundle::<ANY>((lane, id), seen, rays[bundle], &mut hits[bundle]);
             }
         }
         tests

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Shl, Shr, Sub};
 
-use super::{Bits, Mask, Real, f32x8, transpose};
+use super::{Bits, Mask, Mask8, Real, f32x8, transpose, u32x8};
 
 /// Sixteen `f32`, one a lane. Equality of bits with sixteen scalars is the contract.
 #[allow(non_camel_case_types)]
@@ -20,6 +20,10 @@ pub struct u32x16(wide::u32x16);
 #[derive(Clone, Copy, Debug)]
 pub struct Mask16(wide::f32x16);
 
+/// Does one register hold sixteen lanes? Where it takes two, a kernel that keeps many numbers has too few of them,
+/// and had better see the halves one after the other.
+pub const ONE_REGISTER: bool = cfg!(all(target_arch = "x86_64", target_feature = "avx512f"));
+
 impl f32x16 {
     /// Lane `i` is `lanes[i]`.
     #[inline]
@@ -36,9 +40,7 @@ impl f32x16 {
     /// Lanes 0 to 7 and 8 to 15.
     #[inline]
     pub fn halves(self) -> [f32x8; 2] {
-        let lanes = self.to_array();
-        let (low, high) = lanes.split_at(8);
-        [low, high].map(|half| f32x8::new(half.try_into().unwrap_or_default()))
+        [self.half(0), self.half(1)]
     }
 
     /// Lanes 0 to 7 and 8 to 15.
@@ -54,6 +56,12 @@ impl f32x16 {
         let lanes = self.0.as_array();
         let at = |lane: usize| lanes[i * 8 + lane];
         f32x8::new([at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)])
+    }
+
+    /// Replaces lanes 8i to 8i + 7.
+    #[inline(always)]
+    pub fn put_half(&mut self, i: usize, half: f32x8) {
+        self.0.as_mut_array()[i * 8..i * 8 + 8].copy_from_slice(&half.to_array());
     }
 
     /// Lanes 4i to 4i + 3.
@@ -85,11 +93,33 @@ impl f32x16 {
 }
 
 impl u32x16 {
+    /// Lanes 8i to 8i + 7.
+    #[inline(always)]
+    pub fn half(&self, i: usize) -> u32x8 {
+        let lanes = self.0.as_array();
+        let at = |lane: usize| lanes[i * 8 + lane];
+        u32x8::new([at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)])
+    }
+
+    /// Replaces lanes 8i to 8i + 7.
+    #[inline(always)]
+    pub fn put_half(&mut self, i: usize, half: u32x8) {
+        self.0.as_mut_array()[i * 8..i * 8 + 8].copy_from_slice(&half.to_array());
+    }
+
     /// Lanes 4i to 4i + 3.
     #[inline]
     pub fn quarter(&self, i: usize) -> [u32; 4] {
         let lanes = self.0.as_array();
         [lanes[i * 4], lanes[i * 4 + 1], lanes[i * 4 + 2], lanes[i * 4 + 3]]
+    }
+}
+
+impl Mask16 {
+    /// Lanes 8i to 8i + 7.
+    #[inline]
+    pub fn half(self, i: usize) -> Mask8 {
+        Mask8::from_bitmask(self.to_bitmask() >> (i * 8) & 0xff)
     }
 }
 
@@ -225,10 +255,7 @@ impl Real for f32x16 {
     fn from_rows(mut row: impl FnMut(usize) -> [f32; 8]) -> [Self; 8] {
         let low = transpose(std::array::from_fn(|i| f32x8::new(row(i))));
         let high = transpose(std::array::from_fn(|i| f32x8::new(row(i + 8))));
-        std::array::from_fn(|k| {
-            let (low, high) = (low[k].to_array(), high[k].to_array());
-            Self::from_fn(|i| if i < 8 { low[i] } else { high[i - 8] })
-        })
+        std::array::from_fn(|k| Self::of_halves([low[k], high[k]]))
     }
     #[inline]
     fn lane(self, i: usize) -> f32 {

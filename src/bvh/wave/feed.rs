@@ -3,6 +3,7 @@
 use super::slot::Slot;
 use crate::bvh::{
     Bvh, Child, Leaves, Node, Stream, Tally, Way,
+    cost::Cost,
     run::{PACKETS, RUN, Runs},
 };
 use crate::geometry::{Hit, RayLanes, Rayx8};
@@ -141,10 +142,15 @@ impl Feed {
         (self.answered, self.kinds, self.kind) = (0, 0, 0);
     }
 
-    /// How many rays have been answered since this was last asked, with those that the wave answered, and of
-    /// which kinds.
-    pub(super) fn take_count(&mut self, ended: u32) -> (u32, u32) {
-        (std::mem::take(&mut self.answered) + ended, std::mem::replace(&mut self.kinds, self.kind))
+    /// Remembers what the rays since this was last said have cost: those that the wave answered, and those that
+    /// were answered at once.
+    // Out of the way: the wave has no register to spare for what happens once in sixty-four rays.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn tell<const ANY: bool>(&mut self, runs: &mut Runs, ended: u32, cost: Cost) {
+        let rays = std::mem::take(&mut self.answered) + ended;
+        let kinds = std::mem::replace(&mut self.kinds, self.kind);
+        runs.learn_alone::<ANY>(cost + Cost::RAY * rays, rays, kinds);
     }
 
     /// Starts the next ray in a slot; false if there is none, or if the next run goes another way. Rays that

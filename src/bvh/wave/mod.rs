@@ -136,10 +136,9 @@ impl Bvh {
             fresh = false;
             // As it goes on, not when it ends: what is learnt says whether the next run joins it.
             if ended >= RUN as u32 || nodes | sets.leaves == 0 {
-                let (rays, kinds) = feed.take_count(std::mem::take(&mut ended));
-                let cost = Cost::RAY * rays + Cost::RAY_NODE * steps + Cost::RAY_BLOCK * blocks;
-                runs.learn_alone::<ANY>(cost, rays, kinds);
-                (steps, blocks) = (0, 0);
+                let cost = Cost::RAY_NODE * steps + Cost::RAY_BLOCK * blocks;
+                feed.tell::<ANY>(runs, ended, cost);
+                (steps, blocks, ended) = (0, 0, 0);
             }
         }
     }

@@ -1,9 +1,9 @@
 //! Triangles as the leaves hold them: eight in columns.
 
 use super::{Primitive, accept};
-use crate::bvh::HitLanes;
-use crate::geometry::{Aspect, RayLanes, Triangle, TriangleLanes};
-use crate::simd::{Bits, Mask, Real, Vector3, f32x8, vector3};
+use crate::bvh::{HitLanes, Hitx16};
+use crate::geometry::{Aspect, AspectColumns, RayLanes, Rayx16, Triangle, TriangleLanes};
+use crate::simd::{Bits, Mask, Mask8, Mask16, ONE_REGISTER, Real, Vector3, f32x8, f32x16, u32x8, vector3};
 
 /// Eight triangles: 320 bytes, all that a test reads. Padding is nowhere: NaN is never hit.
 #[derive(Clone, Copy, Debug)]
@@ -67,6 +67,41 @@ impl TriangleBlock {
                 }
             }
             None => self.intersect_carefully::<ANY, R>((lane, *id), ray, active.to_bitmask(), hit),
+        }
+    }
+
+    /// A bundle of rays from one origin against the triangle in a lane.
+    #[inline(always)]
+    pub(super) fn intersect_bundle<const ANY: bool>(
+        &self,
+        (lane, id): (usize, &u32),
+        (aspects, margin): (&AspectColumns, f32),
+        ray: &Rayx16,
+        hit: &mut Hitx16,
+    ) {
+        let every = Mask16::splat(true);
+        if ONE_REGISTER {
+            let aspect = (&aspects.splat(lane), f32x16::splat(margin));
+            return self.intersect::<ANY, f32x16>((lane, id), aspect, ray, every, hit);
+        }
+        let (triangle, aspect) = (self.splat(lane), aspects.splat(lane));
+        for half in 0..2 {
+            let limited = RayLanes { t_far: hit.t.half(half), ..ray.half(half) };
+            let all = Mask8::splat(true);
+            match triangle.intersect_seen(&aspect, f32x8::splat(margin), &limited, all) {
+                Some((found, t, u, v)) => {
+                    if found.any() {
+                        let mut hits = hit.half(half);
+                        accept::<ANY, f32x8>(&mut hits, found, (t, u, v), || u32x8::splat(*id));
+                        hit.put_half(half, &hits);
+                    }
+                }
+                // Whole: a hit that is found again changes nothing.
+                None => {
+                    let every = every.to_bitmask();
+                    return self.intersect_carefully::<ANY, f32x16>((lane, *id), ray, every, hit);
+                }
+            }
         }
     }
 
