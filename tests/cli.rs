@@ -278,6 +278,7 @@ fn pixels_are_within_the_picture_and_samples_need_one() {
     let scene = blinding(&folder);
     fails(&["render", &scene, "--pixel", "8,0"], 2, "8 x 8 pixels");
     fails(&["render", &scene, "--sample", "1"], 2, "--pixel");
+    fails(&["render", &scene, "--pixel", "0,0", "--sample", "4294967295"], 2, "0..4294967295");
     fails(&["render", &scene, "--pixel", "1,1", "-o", "a.png"], 2, "cannot be used with");
 }
 

@@ -189,6 +189,12 @@ fn integrators_have_their_parameters() {
             "<integrator type='path'><integer name='max_depth' value='-1'/></integrator>",
             Integrator::Path { max_depth: None, rr_depth: 5, hide_emitters: false },
         ),
+        (
+            // Roulette that never begins, where something else ends a path.
+            "<integrator type='path'><integer name='max_depth' value='8'/>\
+             <integer name='rr_depth' value='100000'/></integrator>",
+            Integrator::Path { max_depth: Some(8), rr_depth: 100_000, hide_emitters: false },
+        ),
         ("<integrator type='whitted'/>", Integrator::Whitted { max_depth: 10 }),
         ("<integrator type='ao'/>", Integrator::AmbientOcclusion { distance: f32::INFINITY }),
         (

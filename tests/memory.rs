@@ -121,8 +121,9 @@ fn a_scene_beyond_the_limit_is_refused_before_its_tree_is_built() {
     let picture = path(&folder("memory/refused"), "a.exr");
     let render =
         |scene, limit| -> Vec<&str> { vec!["render", scene, "-o", &picture, "--memory-limit", limit] };
-    let film =
-        [render("scenes/cornell.xml", "256MiB"), vec!["--width", "10000", "--height", "10000"]].concat();
+    // Without the limit it would be rendered for a second, not for an hour.
+    let large = vec!["--width", "10000", "--height", "10000", "--spp", "1", "--time-limit", "1s"];
+    let film = [render("scenes/cornell.xml", "256MiB"), large].concat();
     fails(&film, 1, "most of it: film");
     fails(&render("gen:soup:300k", "40MB"), 1, "more than the 38.1 MiB of --memory-limit");
     fails(&render("gen:soup:300k", "furlongs"), 2, "expected an amount of memory, as in 2GiB");

@@ -4,7 +4,7 @@
 
 mod program;
 
-use std::fs;
+use std::{fs, path::Path};
 
 use packlight::picture::{Encoding, Format, Preview, Style, Tone, decode, encode_with};
 use program::{fails, folder, packlight, path, stderr, triangle};
@@ -37,6 +37,31 @@ fn layers_stand_beside_the_picture_under_names_that_others_know() {
     let png = path(&folder, "a.png");
     fails(&["render", &scene, "-o", &png, "--aov", "depth"], 2, "only an .exr");
     fails(&["render", &scene, "-o", &png, "--aov", "dept"], 2, "depth");
+}
+
+#[test]
+fn what_can_not_be_written_is_refused_before_it_is_rendered() {
+    let folder = folder("written/refused");
+    let (scene, out) = (triangle(&folder), path(&folder, "a.exr"));
+    let before = fs::read(&scene).expect("readable");
+    let whole = ["render", &scene, "-o", &out, "-q", "--spp", "1"];
+    for (options, code, part) in [
+        (vec!["--aov", "albedo,albedo"], 1, "two channels are called albedo.R"),
+        (
+            vec!["--width", "65536", "--height", "65536"],
+            1,
+            "65536 × 65536 pixels with 3 channels are too many",
+        ),
+        (vec!["--checkpoint", &scene], 2, "a checkpoint is an .exr"),
+    ] {
+        fails(&[&whole[..], &options].concat(), code, part);
+        assert!(!Path::new(&out).exists());
+    }
+    assert!(fs::read(&scene).expect("readable") == before, "the scene was written over");
+    // The longest side that a film may have.
+    let output = packlight(&[&whole[..], &["--width", "65536", "--height", "1"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(decode(out.as_ref(), Encoding::Raw).expect("readable").width, 65_536);
 }
 
 #[test]

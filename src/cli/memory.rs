@@ -11,7 +11,8 @@ use crate::{
 /// The option, for every command that renders.
 #[derive(Clone, Copy, Debug, Args)]
 pub(super) struct MemoryOption {
-    /// Refuse a scene that would take more memory, before its tree is built: 2GiB, 512MB or bytes
+    /// Refuse a scene that would take more memory, before its tree is built: 2GiB, 512MB or bytes; what the
+    /// machine has, if not given
     #[arg(long, value_name = "SIZE", value_parser = size)]
     memory_limit: Option<u64>,
 }
@@ -27,9 +28,13 @@ impl MemoryOption {
         conditions: &Conditions,
     ) -> Result<Expected, Failure> {
         let expected = Expected::new(description, conditions);
-        match self.memory_limit {
-            Some(limit) if expected.peak() > limit => Err(Failure::Sentence(expected.refusal(limit))),
-            _ => Ok(expected),
+        let (limit, whose) = match self.memory_limit {
+            Some(limit) => (limit, "of --memory-limit"),
+            None => (machine().unwrap_or(u64::MAX), "of this machine (--memory-limit may say more)"),
+        };
+        match expected.peak() > limit {
+            true => Err(Failure::Sentence(expected.refusal(limit, whose))),
+            false => Ok(expected),
         }
     }
 }
@@ -52,9 +57,9 @@ impl Expected {
         self.budget.peak().max(self.loading)
     }
 
-    fn refusal(&self, limit: u64) -> String {
+    fn refusal(&self, limit: u64, whose: &str) -> String {
         let need = format!(
-            "rendering takes about {}, more than the {} of --memory-limit",
+            "rendering takes about {}, more than the {} {whose}",
             quantity::memory(self.peak()),
             quantity::memory(limit)
         );
@@ -105,17 +110,23 @@ fn size(argument: &str) -> Result<u64, String> {
     }
 }
 
+/// The memory that there is, in bytes, with what may be swapped out; `None` where the system does not say.
+fn machine() -> Option<u64> {
+    let told = std::fs::read_to_string("/proc/meminfo").ok()?;
+    kibibytes(&told, "MemTotal:")?.checked_add(kibibytes(&told, "SwapTotal:")?)
+}
+
 /// The most that the process has had, in bytes; `None` where the system does not say.
 pub(super) fn peak() -> Option<u64> {
     if !cfg!(target_os = "linux") {
         return None;
     }
-    high_water(&std::fs::read_to_string("/proc/self/status").ok()?)
+    kibibytes(&std::fs::read_to_string("/proc/self/status").ok()?, "VmHWM:")
 }
 
-/// `VmHWM` of `/proc/self/status`, in bytes.
-fn high_water(status: &str) -> Option<u64> {
-    let value = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+/// The line of that name in a file of `/proc`, in bytes.
+fn kibibytes(told: &str, name: &str) -> Option<u64> {
+    let value = told.lines().find_map(|line| line.strip_prefix(name))?;
     let kibibytes: u64 = value.trim().strip_suffix("kB")?.trim().parse().ok()?;
     kibibytes.checked_mul(1024)
 }
@@ -123,7 +134,11 @@ fn high_water(status: &str) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{bvh::Quality, compile::Needs};
+    use crate::{
+        bvh::Quality,
+        compile::Needs,
+        scene::{Aov, AovChannel, Film},
+    };
 
     #[test]
     fn amounts_are_read_in_their_own_unit() {
@@ -148,11 +163,11 @@ mod tests {
         let scene = Needs { meshes: 1 << 20, tree: 2 << 20, building: 700 << 20, ..Needs::default() };
         let budget = Budget { scene, film: 5 << 20, ..Budget::default() };
         let expected = Expected { budget, loading: 1000 };
-        let told = expected.refusal(64 << 20);
+        let told = expected.refusal(64 << 20, "of somebody");
         for part in ["703.0 MiB", "64.0 MiB", "building the BVH 700.0 MiB, film 5.0 MiB", "--quality fast"] {
             assert!(told.contains(part), "{part} is not in {told}");
         }
-        let told = Expected { loading: 1 << 40, ..expected }.refusal(64 << 20);
+        let told = Expected { loading: 1 << 40, ..expected }.refusal(64 << 20, "of somebody");
         assert!(told.contains("loading the scene alone"), "{told}");
     }
 
@@ -167,6 +182,7 @@ mod tests {
 
     #[test]
     fn the_line_is_found_and_read() {
+        let high_water = |told| kibibytes(told, "VmHWM:");
         assert_eq!(high_water("VmPeak:\t  99 kB\nVmHWM:\t   1234 kB\n"), Some(1234 * 1024));
         assert_eq!(high_water("VmHWM: lots\n"), None);
         assert_eq!(high_water(""), None);
@@ -174,7 +190,22 @@ mod tests {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn this_process_has_used_some() {
-        assert!(peak().is_some_and(|bytes| bytes > 100_000));
+    fn this_process_has_used_some_of_what_there_is() {
+        let (peak, there) = (peak().expect("known"), machine().expect("known"));
+        assert!(100_000 < peak && peak < there, "{peak} of {there}");
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn the_machine_is_a_limit_that_somebody_may_lift() {
+        let conditions = Conditions { quality: Quality::Medium, threads: 1, keeps_sums: false };
+        let mut description = SceneDescription::default();
+        // 512 million pixels and a thousand layers of three channels: more than any machine has.
+        description.sensor.film = Film::new(1 << 15, 1 << 14);
+        description.aovs = vec![AovChannel { name: "n".into(), kind: Aov::ShNormal }; 1000];
+        let check = |memory_limit| MemoryOption { memory_limit }.check(&description, &conditions);
+        let Err(Failure::Sentence(told)) = check(None) else { panic!("no machine has so much") };
+        assert!(told.contains("of this machine (--memory-limit may say more)"), "{told}");
+        assert!(check(Some(1 << 59)).is_ok());
     }
 }

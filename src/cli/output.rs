@@ -43,6 +43,10 @@ pub(super) fn check_writable(path: &Path) -> Result<(), Failure> {
     if path.is_dir() {
         return Err(Failure::Sentence(format!("{shown} is a folder; name a file in it")));
     }
+    if path.exists() && !path.is_file() {
+        // A device or a pipe is written into, whatever its folder.
+        return Ok(());
+    }
     let folder = folder(path);
     if !folder.is_dir() {
         let folder = folder.display();

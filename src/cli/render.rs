@@ -129,7 +129,7 @@ pub(super) struct Arguments {
     pixel: Option<[u32; 2]>,
 
     /// Only this sample of the pixel, from 0
-    #[arg(long, value_name = "N", requires = "pixel")]
+    #[arg(long, value_name = "N", requires = "pixel", value_parser = value_parser!(u32).range(..i64::from(u32::MAX)))]
     sample: Option<u32>,
 
     #[command(flatten, next_help_heading = MACHINE)]

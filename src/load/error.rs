@@ -1,6 +1,12 @@
 //! Errors and warnings that name the place and the way out.
 
-use std::{error::Error, fmt, ops::Range, path::Path, sync::Arc};
+use std::{
+    error::Error,
+    fmt,
+    ops::Range,
+    path::Path,
+    sync::{Arc, OnceLock},
+};
 
 use miette::{Diagnostic, LabeledSpan, NamedSource, Severity, SourceCode, SourceSpan};
 
@@ -16,9 +22,15 @@ pub struct LoadError(Box<Inner>);
 /// Text longer than this is not shown with an error: files without line breaks are one line.
 const MAX_SHOWN: usize = 4096;
 
+/// Bytes of the longest message.
+const MAX_MESSAGE: usize = 2048;
+
 #[derive(Debug, Clone)]
 struct Inner {
-    place: String,
+    path: String,
+    /// The text, and the byte that is meant. Lines are counted where somebody asks: of warnings, few are shown.
+    position: Option<(Arc<str>, usize)>,
+    place: OnceLock<String>,
     message: String,
     label: String,
     help: Option<String>,
@@ -30,8 +42,10 @@ impl LoadError {
     /// Something is wrong with the file as a whole, or with a place that `message` describes.
     pub fn new(path: &Path, message: impl Into<String>) -> Self {
         Self(Box::new(Inner {
-            place: path.display().to_string(),
-            message: message.into(),
+            path: path.display().to_string(),
+            position: None,
+            place: OnceLock::new(),
+            message: shortened(message.into()),
             label: "here".into(),
             help: None,
             excerpt: None,
@@ -51,12 +65,11 @@ impl LoadError {
         message: impl Into<String>,
     ) -> Self {
         let start = char_boundary(text, range.start);
-        let name = path.display().to_string();
         let mut error = Self::new(path, message);
-        error.0.place = place(path, text, start);
+        error.0.position = Some((Arc::clone(text), start));
         if shown(text, start) <= MAX_SHOWN {
             error.0.excerpt = Some((
-                NamedSource::new(name, Arc::clone(text)),
+                NamedSource::new(&error.0.path, Arc::clone(text)),
                 (start, range.end.min(text.len()).saturating_sub(start)).into(),
             ));
         }
@@ -66,34 +79,48 @@ impl LoadError {
     /// Words under the underlined text.
     #[must_use]
     pub fn label(mut self, label: impl Into<String>) -> Self {
-        self.0.label = label.into();
+        self.0.label = shortened(label.into());
         self
     }
 
     /// The way out.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
-        self.0.help = Some(help.into());
+        self.0.help = Some(shortened(help.into()));
         self
     }
 
     /// `file` or `file:line:column`.
     pub fn place(&self) -> &str {
-        &self.0.place
+        self.0.place.get_or_init(|| match &self.0.position {
+            Some((text, byte)) => place(&self.0.path, text, *byte),
+            None => self.0.path.clone(),
+        })
     }
 }
 
-/// `file:line:column` of a byte of a text file, counted from 1 in characters.
-fn place(path: &Path, text: &str, byte: usize) -> String {
-    let before = &text[..char_boundary(text, byte)];
-    let line = before.matches('\n').count() + 1;
-    let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
-    format!("{}:{line}:{column}", path.display())
+/// Without its middle, if it is longer than anybody reads: a file may name a thing by a million letters.
+fn shortened(mut message: String) -> String {
+    if message.len() > MAX_MESSAGE {
+        let end = char_boundary(&message, message.len() - MAX_MESSAGE / 4);
+        message.replace_range(char_boundary(&message, MAX_MESSAGE / 2)..end, " … ");
+    }
+    message
 }
 
-/// Bytes of the line in which a byte stands, and of its neighbours.
+/// `file:line:column` of a byte of a text file, counted from 1 in characters.
+fn place(path: &str, text: &str, byte: usize) -> String {
+    let before = &text[..byte];
+    let line = before.matches('\n').count() + 1;
+    let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
+    format!("{path}:{line}:{column}")
+}
+
+/// Bytes of the line in which a byte stands, and of its neighbours; of long ones not all, but more than are shown.
 fn shown(text: &str, byte: usize) -> usize {
-    let (before, after) = text.split_at(byte);
+    let before = &text[char_boundary(text, byte.saturating_sub(MAX_SHOWN + 1))..byte];
+    let after = &text[byte..];
+    let after = &after[..char_boundary(after, MAX_SHOWN + 4)];
     let length = |line: Option<&str>| line.map_or(0, str::len);
     let mut before = before.rsplit('\n');
     let mut after = after.split('\n');
@@ -107,7 +134,7 @@ fn char_boundary(text: &str, byte: usize) -> usize {
 
 impl fmt::Display for LoadError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.0.place, self.0.message)
+        write!(f, "{}: {}", self.place(), self.0.message)
     }
 }
 
@@ -176,7 +203,8 @@ impl Warning {
 
 impl PartialEq for Warning {
     fn eq(&self, other: &Self) -> bool {
-        (self.place(), self.message()) == (other.place(), other.message())
+        let told = |warning: &Self| warning.0.0.position.as_ref().map(|(_, byte)| *byte);
+        told(self) == told(other) && self.message() == other.message() && self.0.0.path == other.0.0.path
     }
 }
 
@@ -223,6 +251,16 @@ mod tests {
             let error = LoadError::at(Path::new("f"), &text, 2..3, "");
             assert_eq!(error.source_code().is_some(), is_shown, "{}", text.len());
         }
+    }
+
+    #[test]
+    fn long_messages_keep_their_ends() {
+        let name = "ä".repeat(1_000_000);
+        let told = LoadError::new(Path::new("f"), format!("there is no `{name}` here")).to_string();
+        assert!(told.len() < 2 * MAX_MESSAGE, "{}", told.len());
+        assert!(told.starts_with("f: there is no `ä") && told.ends_with("ä` here"), "{told}");
+        let short = "x".repeat(MAX_MESSAGE);
+        assert_eq!(shortened(short.clone()), short);
     }
 
     #[test]

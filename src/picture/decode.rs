@@ -1,6 +1,6 @@
 //! Files to linear pictures.
 
-use std::{fs, io::Cursor, path::Path};
+use std::{fmt, fs, io::Cursor, path::Path};
 
 use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
@@ -39,7 +39,8 @@ fn decode_image(bytes: &[u8], path: &Path, encoding: Encoding) -> Result<Picture
         .or(is_tga.then_some(ImageFormat::Tga))
         .filter(ImageFormat::reading_enabled)
         .ok_or("not a picture that can be read (EXR, HDR, PNG, JPEG, BMP, TGA)")?;
-    let damaged = |error| format!("damaged {} file ({error})", format!("{format:?}").to_uppercase());
+    let kind = format!("{format:?}").to_uppercase();
+    let damaged = |error: &dyn fmt::Display| format!("damaged {kind} file ({error})");
 
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let mut allowed = Limits::default();
@@ -47,10 +48,13 @@ fn decode_image(bytes: &[u8], path: &Path, encoding: Encoding) -> Result<Picture
     allowed.max_image_height = Some(limits::MAX_SIDE as u32);
     allowed.max_alloc = Some(u64::MAX);
     reader.limits(allowed);
-    let decoder = reader.into_decoder().map_err(damaged)?;
-    let (width, height) = decoder.dimensions();
-    limits::check(width.into(), height.into(), 3)?;
-    let image = DynamicImage::from_decoder(decoder).map_err(damaged)?;
+    let decoder = reader.into_decoder().map_err(|error| damaged(&error))?;
+    let size = decoder.dimensions();
+    let (width, height) = (u64::from(size.0), u64::from(size.1));
+    limits::check(width, height, 3)?;
+    limits::check_expansion((width, height), decoder.total_bytes(), bytes.len())
+        .map_err(|error| damaged(&error))?;
+    let image = DynamicImage::from_decoder(decoder).map_err(|error| damaged(&error))?;
     Ok(to_planes(image, encoding))
 }
 

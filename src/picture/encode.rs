@@ -1,6 +1,11 @@
 //! Pictures to files.
 
-use std::{fs::File, io, io::Write, path::Path};
+use std::{
+    fs::{self, File, OpenOptions},
+    io,
+    io::Write,
+    path::Path,
+};
 
 use image::{ExtendedColorType, ImageEncoder, Rgb, codecs::hdr::HdrEncoder, codecs::png::PngEncoder};
 use tempfile::NamedTempFile;
@@ -87,11 +92,15 @@ pub fn save_with(picture: &Picture, path: &Path, style: &Style) -> Result<(), Pi
     write_whole(path, &bytes).map_err(|source| PictureError::Io { path: path.into(), source })
 }
 
-/// Writes the bytes of any file as [`save`] does: under its name there is always a whole file.
+/// Writes the bytes of any file as [`save`] does: under its name there is always a whole file. What is no file, as
+/// `/dev/stdout`, is written into; nothing takes its place.
 ///
 /// # Errors
 /// What the system says.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if fs::metadata(path).is_ok_and(|there| !there.is_file()) {
+        return OpenOptions::new().write(true).open(path)?.write_all(bytes);
+    }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut file = temporary_in(folder)?;
     file.write_all(bytes)?;
@@ -121,22 +130,33 @@ fn encode_as(picture: &Picture, format: Format, style: &Style) -> Result<Vec<u8>
     }
 }
 
-fn check(picture: &Picture) -> Result<(), String> {
-    limits::check(picture.width.into(), picture.height.into(), picture.channels.len() as u64)?;
-    if picture.channels.is_empty() {
+/// Whether a picture of this size, with channels of these names, could be written: what is rendered for hours should
+/// not be refused in the end.
+///
+/// # Errors
+/// Why not, in words.
+pub fn check_layout(width: u32, height: u32, names: &[&str]) -> Result<(), String> {
+    limits::check(width.into(), height.into(), names.len() as u64)?;
+    if names.is_empty() {
         return Err("the picture has no channels".into());
     }
+    match names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
+        Some((_, name)) => Err(format!("two channels are called {name}")),
+        None => Ok(()),
+    }
+}
+
+fn check(picture: &Picture) -> Result<(), String> {
+    let names: Vec<&str> = picture.channels.iter().map(|channel| channel.name.as_str()).collect();
+    check_layout(picture.width, picture.height, &names)?;
     let pixels = picture.width as usize * picture.height as usize;
-    for (i, channel) in picture.channels.iter().enumerate() {
+    for channel in &picture.channels {
         if channel.samples.len() != pixels {
             return Err(format!(
                 "channel {} has {} samples for {pixels} pixels",
                 channel.name,
                 channel.samples.len()
             ));
-        }
-        if picture.channels[..i].iter().any(|other| other.name == channel.name) {
-            return Err(format!("two channels are called {}", channel.name));
         }
     }
     Ok(())
@@ -193,8 +213,6 @@ fn colours<'a>(picture: &'a Picture, kind: &str) -> Result<impl Iterator<Item = 
 
 #[cfg(test)]
 mod tests {
-    use std::fs;
-
     use super::*;
     use crate::picture::{Channel, Encoding, decode};
 
@@ -319,6 +337,21 @@ mod tests {
         fs::create_dir(folder.path().join("b.png")).unwrap();
         assert!(save(&picture, &folder.path().join("b.png"), Preview::default()).is_err());
         assert_eq!(names(folder.path()), ["b.png"]);
+    }
+
+    /// By a link, so that no device is lost if something took its place after all.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn devices_are_written_into() {
+        let folder = tempfile::tempdir().unwrap();
+        let (full, null) = (folder.path().join("full.exr"), folder.path().join("null.exr"));
+        std::os::unix::fs::symlink("/dev/full", &full).unwrap();
+        std::os::unix::fs::symlink("/dev/null", &null).unwrap();
+        let picture = picture(1, 1, |_| 1.0);
+        let told = save(&picture, &full, Preview::default()).unwrap_err().to_string();
+        assert!(told.contains("No space left"), "{told}");
+        save(&picture, &null, Preview::default()).unwrap();
+        assert!(full.is_symlink() && null.is_symlink());
     }
 
     #[cfg(unix)]

@@ -16,7 +16,9 @@ use std::fmt;
 
 use crate::math::Digest;
 pub use decode::{Encoding, decode};
-pub use encode::{Format, Preview, Style, encode, encode_with, save, save_with, to_srgb, write_whole};
+pub use encode::{
+    Format, Preview, Style, check_layout, encode, encode_with, save, save_with, to_srgb, write_whole,
+};
 pub use error::PictureError;
 pub use openexr::{ExrCompression, ExrStyle};
 pub use tonemap::Tone;

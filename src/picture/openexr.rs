@@ -17,9 +17,6 @@ use super::{Channel, Picture, Place, exr_blocks, exr_header, limits};
 /// The first bytes of every OpenEXR file.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
-/// None of the compressions grows by more than this: deflate by 1032, and PXR24 by a third more.
-const MAX_EXPANSION: u64 = 2048;
-
 /// How an OpenEXR file holds a picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExrStyle {
@@ -169,14 +166,8 @@ fn check_header(bytes: &[u8]) -> Result<(), String> {
         let size = header.layer_size;
         limits::check(size.width() as u64, size.height() as u64, header.channels.list.len() as u64)?;
         unpacked += size.area() as u64 * header.channels.bytes_per_pixel as u64;
-        if unpacked > bytes.len() as u64 * MAX_EXPANSION {
-            return Err(format!(
-                "damaged EXR file (it announces {} × {} pixels, more than its {} bytes can hold)",
-                size.width(),
-                size.height(),
-                bytes.len()
-            ));
-        }
+        limits::check_expansion((size.width() as u64, size.height() as u64), unpacked, bytes.len())
+            .map_err(|error| format!("damaged EXR file ({error})"))?;
         if header.deep {
             return Err("deep EXR files are not supported; flatten the file first".into());
         }

@@ -3,7 +3,11 @@
 //! An estimate, meant to be close and rather too high: what allocators keep and how full nodes are differs
 //! from scene to scene. `tests/memory.rs` holds it against what renders really take.
 
-use super::{aov, frame::TILE};
+use super::{
+    aov::{self, AovIntegrator},
+    frame::TILE,
+    integrator::Integrator as _,
+};
 use crate::bvh::Quality;
 use crate::compile::{Needs, needs};
 use crate::film::sums;
@@ -74,19 +78,19 @@ impl Budget {
     }
 }
 
-/// Channels that are summed: colours, and what the camera sees besides.
-fn channels(description: &SceneDescription) -> u64 {
-    let beside = aov::layers(&description.aovs).count();
-    match &description.integrator {
-        Integrator::Aov { channels } => (aov::layers(channels).count() + beside) as u64,
-        _ => (3 + beside) as u64,
-    }
+/// Names of the channels that are summed: colours, and what the camera sees besides.
+pub fn channels(description: &SceneDescription) -> Vec<String> {
+    let first = match &description.integrator {
+        Integrator::Aov { channels } => AovIntegrator { channels: channels.clone() }.channels(),
+        _ => ["R", "G", "B"].map(String::from).into(),
+    };
+    first.into_iter().chain(aov::layers(&description.aovs)).collect()
 }
 
 fn film(description: &SceneDescription, keeps_sums: bool) -> u64 {
     let window = description.sensor.film.window();
     let pixels = u64::from(window.width) * u64::from(window.height);
-    let channels = channels(description);
+    let channels = channels(description).len() as u64;
     let alpha = match description.sensor.film.format {
         PixelFormat::Rgb | PixelFormat::Luminance => 0,
         PixelFormat::Rgba | PixelFormat::LuminanceAlpha => 1,
@@ -112,7 +116,7 @@ fn wavefront(description: &SceneDescription) -> u64 {
         }
         Integrator::Aov { .. } => (0, 1),
     };
-    let channels = channels(description).next_multiple_of(4);
+    let channels = (channels(description).len() as u64).next_multiple_of(4);
     // Rows of paths, now and next; hits, keys and order; sums of the round and of the pixel; connections.
     let path = 64 * (1 + branches) + 28 + 2 * channels * FLOAT + shadow_rays * 11 * FLOAT;
     // Where paths branch there are more of them than pixels, say twice as many; and an arena keeps what has been

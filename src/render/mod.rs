@@ -33,7 +33,7 @@ mod vertex;
 mod wavefront;
 mod whitted;
 
-pub use budget::{Budget, Conditions};
+pub use budget::{Budget, Conditions, channels};
 pub use census::{Census, Crowd, Ends, census};
 pub use frame::{Coverage, Frame, Plan, TileView, Watch, tile_count};
 pub use irradiance::Receiver;

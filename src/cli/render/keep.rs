@@ -24,7 +24,7 @@ const KEEP: &str = "Checkpoints (what is continued ends in the same bits as what
 #[derive(Clone, Debug, Args)]
 pub(super) struct KeepOptions {
     /// File that holds, now and then and at the end, what is there; an .exr that can be looked at
-    #[arg(long, value_name = "FILE", help_heading = KEEP)]
+    #[arg(long, value_name = "FILE", help_heading = KEEP, value_parser = exr)]
     pub(super) checkpoint: Option<PathBuf>,
 
     /// Time from one checkpoint to the next
@@ -110,7 +110,31 @@ impl KeepOptions {
     }
 }
 
+/// For clap: a usage error for any other extension, which might be the scene's.
+fn exr(argument: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(argument);
+    match path.extension() {
+        Some(extension) if extension.eq_ignore_ascii_case("exr") => Ok(path),
+        _ => Err("a checkpoint is an .exr, as in --checkpoint kept.exr".into()),
+    }
+}
+
 /// Written often, read seldom.
 pub(super) fn quick() -> Style {
     Style { exr: ExrStyle { compression: ExrCompression::None, ..ExrStyle::default() }, ..Style::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_checkpoint_overwrites_no_scene() {
+        for right in ["kept.exr", "a/b.EXR"] {
+            assert_eq!(exr(right), Ok(right.into()));
+        }
+        for wrong in ["scene.xml", "bunny.ply", "exr", ".exr", "a.exr.xml", ""] {
+            assert!(exr(wrong).is_err(), "{wrong}");
+        }
+    }
 }

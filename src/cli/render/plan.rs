@@ -14,7 +14,7 @@ use crate::{
         overrides::IntegratorName,
     },
     load::Loaded,
-    picture::Format,
+    picture::{Format, check_layout},
     render::{self, Conditions, Plan, Shard},
     scene::{PixelFormat, Projection, SceneDescription, Sensor},
 };
@@ -46,6 +46,7 @@ pub(super) fn planned(arguments: &Arguments, output: &Output) -> Result<Planned,
     if let Some(option) = arguments.style.only_for_png().filter(|_| output.format != Format::Png) {
         warn_of(format!("{option} only changes a .png; the numbers of this file stay linear"));
     }
+    can_be_written(description)?;
     let plan = plan(arguments, description, output.format)?;
     let may_be_part = arguments.time_limit.is_some() || plan.shard != Shard::WHOLE;
     let keeps_sums = arguments.keep.keeps_sums() || may_be_part && output.format == Format::Exr;
@@ -69,6 +70,15 @@ fn can_hold(format: Format, description: &SceneDescription) -> Result<(), Failur
     }
     let message = "layers and the aov integrator write named channels, which only an .exr can hold";
     Err(refused(ErrorKind::ArgumentConflict, message))
+}
+
+/// What encoders refuse is refused while nothing is lost.
+fn can_be_written(description: &SceneDescription) -> Result<(), Failure> {
+    let window = description.sensor.film.window();
+    let names = render::channels(description);
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    check_layout(window.width, window.height, &names)
+        .map_err(|error| Failure::Sentence(format!("the picture can't be written: {error}")))
 }
 
 /// Noise is that of light, in a whole picture that a camera sees.

@@ -23,26 +23,28 @@ const AOVS: [(&str, Aov); 10] = [
     ("primitives", Aov::Primitives),
 ];
 
+/// Most vertices of a path that nothing may end.
+const MAX_CERTAIN: u32 = 1000;
+
 pub(super) fn build(object: Object, files: &mut Files) -> Result<Integrator, LoadError> {
     if object.plugin() == "moment" {
         return moment(object, files);
     }
     let integrator = match object.plugin() {
-        "path" => Integrator::Path {
-            max_depth: max_depth(object)?,
-            rr_depth: object.count("rr_depth", 5, 1, i32::MAX as u32)?,
-            hide_emitters: object.boolean("hide_emitters", false)?,
-        },
+        "path" => {
+            let (max_depth, rr_depth) = depths(object)?;
+            Integrator::Path { max_depth, rr_depth, hide_emitters: object.boolean("hide_emitters", false)? }
+        }
         "direct" => {
             direct_samples(object, files)?;
             Integrator::Direct { hide_emitters: object.boolean("hide_emitters", false)? }
         }
         "whitted" => Integrator::Whitted { max_depth: object.count("max_depth", 10, 0, 1000)? },
         "ao" => Integrator::AmbientOcclusion { distance: object.positive("distance", f64::INFINITY)? as f32 },
-        "irradiance" => Integrator::Irradiance {
-            max_depth: max_depth(object)?,
-            rr_depth: object.count("rr_depth", 5, 1, i32::MAX as u32)?,
-        },
+        "irradiance" => {
+            let (max_depth, rr_depth) = depths(object)?;
+            Integrator::Irradiance { max_depth, rr_depth }
+        }
         "aov" => Integrator::Aov { channels: aovs(object)? },
         _ => return Err(object.unknown_plugin()),
     };
@@ -66,6 +68,19 @@ fn moment(object: Object, files: &mut Files) -> Result<Integrator, LoadError> {
         inside.plugin()
     )));
     build(inside, files)
+}
+
+/// `max_depth`, and the depth from which roulette may end a path: one of them must, or paths between white walls
+/// never end.
+fn depths(object: Object) -> Result<(Option<u32>, u32), LoadError> {
+    let (max_depth, rr_depth) = (max_depth(object)?, object.count("rr_depth", 5, 1, i32::MAX as u32)?);
+    let certain = rr_depth.min(max_depth.unwrap_or(u32::MAX));
+    if certain > MAX_CERTAIN {
+        return Err(object
+            .error_at("rr_depth", format!("nothing ends a path before it has {certain} vertices"))
+            .help(format!("set `rr_depth` or `max_depth` to {MAX_CERTAIN} or less")));
+    }
+    Ok((max_depth, rr_depth))
 }
 
 fn max_depth(object: Object) -> Result<Option<u32>, LoadError> {

@@ -4,6 +4,7 @@ mod elsewhere;
 
 use std::{
     cell::{Cell, RefCell},
+    collections::HashSet,
     fs,
     path::{Path, PathBuf},
     sync::Arc,
@@ -91,6 +92,7 @@ impl Reader {
 
         let mut entries = Vec::new();
         self.read_entries(source, xml, depth, &mut entries)?;
+        once_each(&entries)?;
 
         let place = self.document.nodes.len();
         if let Some(id) = &id {
@@ -155,15 +157,6 @@ impl Reader {
                 new_entry(name, tag, Value::Object(place))
             }
         };
-        if let Some(name) = &entry.name
-            && entries.iter().any(|other| other.name.as_ref() == Some(name))
-        {
-            return Err(entry
-                .name_span
-                .error(format!("`{name}` is given twice"))
-                .label("the second time")
-                .help("keep one of the two"));
-        }
         entries.push(entry);
         Ok(())
     }
@@ -223,8 +216,7 @@ impl Reader {
         if name.value.is_empty() {
             return Err(name.error("the name of a parameter is empty"));
         }
-        self.parameters.default(&name.value, &value.value);
-        Ok(())
+        self.parameters.default(&name.value, &value.value, &name.span)
     }
 
     fn attributes(&mut self, source: &Arc<Source>, xml: XmlNode) -> Result<Attributes, LoadError> {
@@ -252,6 +244,23 @@ fn check_version(attributes: &mut Attributes) -> Result<(), LoadError> {
             .error(format!("scenes of Mitsuba version `{}` are not read", version.value))
             .help("the names of elements and properties are those of Mitsuba 3: version=\"3.0.0\"")),
     }
+}
+
+/// Refuses a name that two entries of an object have.
+fn once_each(entries: &[Entry]) -> Result<(), LoadError> {
+    let mut names = HashSet::new();
+    for entry in entries {
+        if let Some(name) = &entry.name
+            && !names.insert(name)
+        {
+            return Err(entry
+                .name_span
+                .error(format!("`{name}` is given twice"))
+                .label("the second time")
+                .help("keep one of the two"));
+        }
+    }
+    Ok(())
 }
 
 fn unknown_element(tag: &Span, element: &str) -> LoadError {

@@ -148,13 +148,19 @@ pub(super) const PROPERTIES: [&str; 9] =
 /// Elements that Mitsuba has and packlight does not.
 pub(super) const FOREIGN_ELEMENTS: [&str; 5] = ["medium", "phase", "volume", "animation", "tensor"];
 
+/// Bytes of what may be a slip of somebody's fingers.
+const MAX_WORD: usize = 256;
+
 /// The known word most like a misspelt one, if any is alike.
 pub(in crate::load) fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     // Older Mitsuba versions wrote `toWorld` for `to_world`.
     let folded = |s: &str| s.to_ascii_lowercase().replace(['_', '-'], "");
     let word = folded(word);
+    // Likeness takes time and memory by the product of both lengths.
+    let is_word = |s: &str| s.len() <= MAX_WORD;
     known
         .into_iter()
+        .filter(|candidate| is_word(&word) && is_word(candidate))
         .map(|candidate| (strsim::normalized_damerau_levenshtein(&word, &folded(candidate)), candidate))
         .filter(|(likeness, _)| *likeness > 0.55)
         .max_by(|a, b| a.0.total_cmp(&b.0))

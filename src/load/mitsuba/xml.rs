@@ -7,9 +7,60 @@ use roxmltree::{Node as XmlNode, ParsingOptions};
 use super::source::{Source, Span};
 use crate::load::LoadError;
 
+/// Most attributes of an element, and declarations of namespaces in a file. The parser compares each with all the
+/// others.
+const MAX_ATTRIBUTES: usize = 256;
+
 pub(super) fn parse(source: &Source) -> Result<roxmltree::Document<'_>, LoadError> {
+    if let Some(start) = crowded(&source.text) {
+        let message = format!("more than {MAX_ATTRIBUTES} attributes of an element, or namespaces of a file");
+        return Err(source.range_error(start..start + 1, message));
+    }
     let options = ParsingOptions { allow_dtd: false, ..ParsingOptions::default() };
     roxmltree::Document::parse_with_options(&source.text, options).map_err(|e| syntax_error(source, &e))
+}
+
+/// Where the first element begins that has too many attributes, or with which there are too many namespaces. What is
+/// not XML has none: the parser will say what is wrong.
+fn crowded(text: &str) -> Option<usize> {
+    let (mut at, mut namespaces) = (0, 0);
+    loop {
+        let start = at + text[at..].find('<')?;
+        let rest = &text[start..];
+        let passed = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")]
+            .into_iter()
+            .find_map(|(begin, end)| rest.starts_with(begin).then_some(end));
+        let length = match passed {
+            Some(end) => rest.find(end)? + end.len(),
+            None => {
+                let (length, values) = tag(rest)?;
+                namespaces += rest[..length].matches("xmlns").count();
+                if values > MAX_ATTRIBUTES || namespaces > MAX_ATTRIBUTES {
+                    return Some(start);
+                }
+                length
+            }
+        };
+        at = start + length;
+    }
+}
+
+/// Bytes of the tag at the beginning of a text, and values in quotes that are in it.
+fn tag(text: &str) -> Option<(usize, usize)> {
+    let (mut quote, mut values) = (None, 0);
+    for (i, byte) in text.bytes().enumerate() {
+        match quote {
+            Some(open) if open == byte => {
+                quote = None;
+                values += 1;
+            }
+            Some(_) => {}
+            None if byte == b'>' => return Some((i + 1, values)),
+            None if matches!(byte, b'"' | b'\'') => quote = Some(byte),
+            None => {}
+        }
+    }
+    None
 }
 
 fn syntax_error(source: &Source, error: &roxmltree::Error) -> LoadError {
@@ -75,5 +126,32 @@ pub(super) fn no_children(source: &Arc<Source>, xml: XmlNode) -> Result<(), Load
             child.tag_name().name(),
             xml.tag_name().name()
         ))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn element(attributes: usize) -> String {
+        (0..attributes).fold("<a".to_owned(), |text, i| format!("{text} b{i}='>\"'")) + "/>"
+    }
+
+    #[test]
+    fn crowds_are_found_where_they_stand() {
+        for (text, place) in [
+            (String::new(), None),
+            ("<a b='".into(), None),
+            ("<!-- a".into(), None),
+            (element(MAX_ATTRIBUTES), None),
+            (element(MAX_ATTRIBUTES + 1), Some(0)),
+            // What stands in a comment is no element.
+            (format!("<?xml a=''?> <!-- ' {} --> <a>", element(MAX_ATTRIBUTES + 1)), None),
+            (format!("<a><!-- ' --><![CDATA[<']]>{}</a>", element(MAX_ATTRIBUTES + 1)), Some(27)),
+            ("<a xmlns:b='c'>".repeat(MAX_ATTRIBUTES), None),
+            ("<a xmlns:b='c'>".repeat(MAX_ATTRIBUTES + 1), Some(15 * MAX_ATTRIBUTES)),
+        ] {
+            assert_eq!(crowded(&text), place, "{}", &text[..text.len().min(80)]);
+        }
     }
 }
