@@ -243,12 +243,12 @@ mod tests {
             beams += 1;
             let t_far = f32x8::splat([f32::INFINITY, 1.0][i / 2 % 2]);
             let (children, nearest) = beam.children(&node, t_far.lane(0));
-            for place in 0..8 {
+            for (place, bounds) in boxes.iter().enumerate() {
                 let exact = beam.rays(&node, place, &rays, t_far) & active;
                 for lane in (0..LANES).filter(|&lane| exact.lane(lane)) {
                     entered += 1;
                     assert!(children.lane(place), "case {i}: a ray enters child {place}, its beam does not");
-                    let (near, _) = boxes[place].interval(&rays.lane(lane));
+                    let (near, _) = bounds.interval(&rays.lane(lane));
                     assert!(nearest.lane(place) <= near, "case {i}: child {place} is said to be farther");
                 }
                 let all = beam.beams(&node, place, t_far);
