@@ -47,7 +47,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("clap_mangen", &["cli/"]),
     ("ctrlc", &["cli/"]),
     ("exr", &["picture/"]),
-    ("flate2", &["load/serialized.rs", "load/serialized/"]),
+    ("flate2", &["load/serialized.rs", "load/serialized/", "picture/exr_zip.rs"]),
     ("glam", &[""]),
     ("image", &["picture/"]),
     ("indicatif", &["cli/"]),

@@ -85,6 +85,20 @@ fn sentences_are_broken_between_words() {
     assert!(joined.ends_with("; the render goes on without it"), "{told}");
 }
 
+#[test]
+fn what_is_wrong_with_a_command_line_is_broken_between_words() {
+    let words = "render a.xml -o a.exr --checkpoint b --resume c --shard 1/2 --pixel 3,4";
+    let Some(told) = on_a_terminal(words, "1") else { return };
+    assert!(told.lines().all(|line| line.chars().count() <= COLUMNS), "{told}");
+    let piped = stderr(&packlight(&words.split(' ').collect::<Vec<_>>()));
+    let usage = piped.lines().find(|line| line.starts_with("Usage:")).expect("it says how");
+    assert!(usage.chars().count() > COLUMNS, "{usage}");
+    let words = |text: &str| text.split_whitespace().map(String::from).collect::<Vec<_>>();
+    assert_eq!(words(&told), words(&piped));
+    let coloured = on_a_terminal("render --no-such-flag", "").expect("it was there");
+    assert!(coloured.contains("\x1b[1m") && coloured.contains("--no-such-flag"), "{coloured}");
+}
+
 /// What a shell prints, or `None` if it is not there.
 fn shell(name: &str, script: &str) -> Option<String> {
     let folder = std::path::Path::new(PROGRAM).parent().expect("it is in a folder").display().to_string();

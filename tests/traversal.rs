@@ -10,7 +10,7 @@ mod scenes;
 
 use glam::Vec3;
 use packlight::bvh::{Tracer, Traversal, Way};
-use packlight::compile::{Scene, compile};
+use packlight::compile::{Asked, Scene, compile};
 use packlight::geometry::{Hit, PrimitiveId, Ray, Ray32, RayLanes, Rayx8};
 use packlight::scene::{Aov, AovChannel, Instance, SceneDescription};
 use packlight::simd::{Mask8, Real, Vector3, f32x8};
@@ -360,7 +360,8 @@ fn an_instance_is_what_its_group_is_elsewhere() {
         inside += 1;
         let line = (ray.org.into(), ray.dir.into());
         let at = |scene: &Scene, hit: Hit| {
-            scene.surface::<f32>(line, (hit.t, hit.u, hit.v), hit.primitive.0, true)
+            let asked = Asked { oriented: true, mapped: true };
+            scene.surface::<f32>(line, (hit.t, hit.u, hit.v), hit.primitive.0, asked)
         };
         if b.primitive == PrimitiveId::NONE || (a.t - b.t).abs() > 1e-4 * a.t {
             others += 1;

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use glam::{DAffine3, DVec3, Vec3};
 use packlight::bvh::Traversal;
-use packlight::compile::{Scene, compile};
+use packlight::compile::{Asked, Scene, compile};
 use packlight::geometry::{PrimitiveId, Ray, offset_origin};
 use packlight::load::{LoadOptions, load};
 use packlight::scene::{Geometry, Material, MaterialIndex, SceneDescription, Shape};
@@ -168,7 +168,7 @@ fn false_shadows(scene: &Scene, scale: f32, by: Vec3) -> (u32, u32) {
             continue;
         }
         let from = (ray.org.into(), ray.dir.into());
-        let surface = scene.surface::<f32>(from, (hit.t, hit.u, hit.v), hit.primitive.0, false);
+        let surface = scene.surface::<f32>(from, (hit.t, hit.u, hit.v), hit.primitive.0, Asked::default());
         let n = Vec3::from(surface.n_g) * -Vec3::from(surface.n_g).dot(ray.dir).signum();
         let any = random.vector();
         let steep = [1.0, 1e-1, 1e-3][i % 3] * (0.1 + random.unit());

@@ -52,6 +52,11 @@ impl Failure {
     /// Writes to stderr (help and version: to stdout). A closed pipe is not worth another failure.
     pub(super) fn tell(&self) {
         match self {
+            Self::Usage(error) if error.use_stderr() && stderr().is_terminal() => {
+                let text = error.render();
+                // clap breaks help at blanks, and errors nowhere.
+                tell_sentence(&if no_color() { text.to_string() } else { text.ansi().to_string() });
+            }
             Self::Usage(error) => drop(error.print()),
             Self::Scene(error) => tell_report(&**error),
             Self::Sentence(sentence) => tell_sentence(&format!("{} {sentence}", headed("error:", RED))),

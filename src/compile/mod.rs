@@ -20,6 +20,7 @@ use std::time::{Duration, Instant};
 pub use lights::envmap;
 pub use needs::{Needs, needs};
 pub use primitives::Primitives;
+pub use queries::Asked;
 pub use shapes::Degenerate;
 pub use surfaces::Surface;
 pub use tree::TreeShape;
@@ -69,6 +70,8 @@ pub struct Scene {
     pub integrator: Integrator,
     /// What the camera sees besides.
     pub aovs: Vec<AovChannel>,
+    /// Are (u, v) among what the camera sees?
+    pub shows_uv: bool,
     summary: Summary,
     degenerate: Vec<Degenerate>,
 }
@@ -163,7 +166,7 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
         Projection::IrradianceMeter { shape } => Some(shape),
         _ => None,
     };
-    let named = Named { materials: &material_ids, mapped: shows_uv(description), meshes: &meshes, metered };
+    let named = Named { materials: &material_ids, meshes: &meshes, metered };
     let mut lights = lights::without_surface(&description.emitters);
     let shapes::Shapes { surfaces, mut references, mut degenerate, metered } =
         shapes::compile(&description.shapes, &named, &mut lights)?;
@@ -225,6 +228,7 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
         sampler: description.sensor.sampler,
         integrator: description.integrator.clone(),
         aovs: description.aovs.clone(),
+        shows_uv: shows_uv(description),
         summary,
         degenerate,
     })

@@ -11,6 +11,15 @@ use crate::simd::{Bits, Mask8, Real, Vector3, f32x8, u32x8};
 /// Trees of so many nodes are gone through together.
 const FEW_NODES: usize = 8;
 
+/// What some look at of a [`Surface`], and most don't.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Asked {
+    /// Whatever has to do with the direction of u and v.
+    pub oriented: bool,
+    /// (u, v), whether the material has textures or not.
+    pub mapped: bool,
+}
+
 impl Scene {
     /// The nearest hits of a packet; lanes that are not active, or hit nothing, have primitive
     /// [`PrimitiveId::NONE`] and t = +∞.
@@ -104,21 +113,20 @@ impl Scene {
         self.surfaces.shape(primitive.0).material
     }
 
-    /// The points where rays (org, dir) met their primitives at (t, u, v); `oriented` asks for the
-    /// directions of u and v.
+    /// The points where rays (org, dir) met their primitives at (t, u, v).
     #[inline]
     pub fn surface<R: Real>(
         &self,
         ray: (Vector3<R>, Vector3<R>),
         tuv: (R, R, R),
         primitive: R::Bits,
-        oriented: bool,
+        asked: Asked,
     ) -> Surface<R> {
         let instances = &self.primitives.instances;
         if !instances.is_empty() {
-            return instances.surface(&self.surfaces, ray, (tuv, primitive), oriented);
+            return instances.surface(&self.surfaces, ray, (tuv, primitive), asked);
         }
-        self.surfaces.at(ray, tuv, primitive, oriented)
+        self.surfaces.at(ray, tuv, primitive, asked)
     }
 
     /// How many primitives there are, those without area included and an instance as one; their ids are less.

@@ -22,8 +22,6 @@ use crate::simd::{Real, Vector3};
 pub(super) struct Named<'a> {
     /// By place in the description: which material, and whether it is different at other (u, v).
     pub(super) materials: &'a [(MaterialId, bool)],
-    /// Does somebody ask for (u, v) besides?
-    pub(super) mapped: bool,
     pub(super) meshes: &'a AttributedMeshes,
     /// Place of the shape whose irradiance is measured.
     pub(super) metered: Option<u32>,
@@ -149,7 +147,7 @@ impl Shapes {
                 self.refer(row.sphere.bounds(), SPHERE);
                 self.surfaces.spheres.push(row);
                 (
-                    Class::Sphere { mapped: varies || named.mapped },
+                    Class::Sphere { mapped: varies },
                     self.surfaces.spheres.len() - 1,
                     Emitting::Sphere(row.sphere),
                 )

@@ -2,6 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
+use super::Asked;
 use crate::geometry::{Canonical, CanonicalKind, Sphere};
 use crate::light::LightId;
 use crate::material::MaterialId;
@@ -38,7 +39,7 @@ pub(super) enum Class {
         normal: Interpolate,
     },
     Sphere {
-        /// Does anybody look at (u, v)? If not, they need not be worked out.
+        /// Does its material look at (u, v)? If not, and nobody else does, they need not be worked out.
         mapped: bool,
     },
     Canonical,
@@ -152,21 +153,21 @@ impl Surfaces {
     }
 
     /// The points where rays with direction `dir` from `org` met `primitive` at (t, u, v). Every lane
-    /// must name a primitive. `oriented` asks for what has to do with the direction of u and v.
+    /// must name a primitive.
     #[inline]
     pub(super) fn at<R: Real>(
         &self,
         (org, dir): (Vector3<R>, Vector3<R>),
         (t, u, v): (R, R, R),
         primitive: R::Bits,
-        oriented: bool,
+        asked: Asked,
     ) -> Surface<R> {
         let shape = |i: usize| self.shape_of[primitive.lane(i) as usize];
         let first = shape(0);
         let one = (!primitive.equal(R::Bits::splat(primitive.lane(0)))).none();
         let (part, side, light) = if one || (1..R::LANES).all(|i| shape(i) == first) {
             let row = &self.shapes[first as usize];
-            let part = self.of_one_shape(row, (org, dir), (t, u, v), primitive);
+            let part = self.of_one_shape(row, (org, dir), (t, u, v), primitive, asked.mapped);
             (part, R::splat(row.side), R::Bits::splat(row.light.0))
         } else {
             let rows: [&ShapeRow; 8] =
@@ -176,7 +177,7 @@ impl Surfaces {
         };
         let (n_g, n_s) = (part.n_g.scale(side), part.n_s.scale(side));
         let (mut frame, mut moves) = (Frame::around(n_s), [Vector3::zero(); 2]);
-        if oriented {
+        if asked.oriented {
             let mut lanes = [[Vec3::ZERO; 2]; 8];
             for (i, lane) in lanes[..R::LANES].iter_mut().enumerate() {
                 *lane = self.partials(primitive.lane(i), part.position.lane(i), part.n_g.lane(i));
@@ -209,6 +210,7 @@ impl Surfaces {
         (org, dir): (Vector3<R>, Vector3<R>),
         (t, u, v): (R, R, R),
         primitive: R::Bits,
+        asked: bool,
     ) -> Part<R> {
         let place = row.first_in_class as usize;
         match row.class {
@@ -220,7 +222,7 @@ impl Surfaces {
             Class::Sphere { mapped } => {
                 let SphereRow { sphere, to_local } = &self.spheres[place];
                 let (center, radius) = (Vector3::splat(sphere.center), R::splat(sphere.radius));
-                let to_local = mapped.then(|| to_local.map(Vector3::splat));
+                let to_local = (mapped || asked).then(|| to_local.map(Vector3::splat));
                 on_sphere((center, radius), to_local, org + dir.scale(t))
             }
             Class::Canonical => self.canonicals[place].at(org + dir.scale(t)),

@@ -35,13 +35,12 @@ impl Spread {
 
     /// Takes in a finished block, whose first three channels are R, G and B.
     pub(super) fn add(&mut self, block: &Sums) {
-        let pixels = self.sums.len();
-        for pixel in 0..pixels {
-            let [r, g, b] = [0, 1, 2].map(|c| block.values[c * pixels + pixel]);
-            let count = block.counts[pixel].max(1) as f32;
-            let mean = (0.2126 * r + 0.7152 * g + 0.0722 * b) / count;
-            self.sums[pixel] += mean;
-            self.squares[pixel] += mean * mean;
+        let colours = block.plane(0).zip(block.plane(1)).zip(block.plane(2)).zip(block.counts());
+        for ((sum, square), (((r, g), b), &count)) in self.sums.iter_mut().zip(&mut self.squares).zip(colours)
+        {
+            let mean = (0.2126 * r + 0.7152 * g + 0.0722 * b) / count.max(1) as f32;
+            *sum += mean;
+            *square += mean * mean;
         }
         self.blocks += 1;
     }

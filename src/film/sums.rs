@@ -14,67 +14,122 @@
 //! pieces: samples may be rendered in several goes, on several machines, and end in the same bits. Besides,
 //! rounding grows like the logarithm of the number of samples, not like the number.
 
-use crate::simd::{LANES, f32x8};
+use super::GREATEST;
+use crate::simd::{LANES, Real, f32x8};
 
 /// Samples that are added one after the other.
 pub const BLOCK: u32 = 16;
 
+/// Four numbers of a pixel, side by side.
+pub type Quad = [f32; 4];
+
+/// In a row of so many channels: each of them, and 1 behind the last. A pixel's row is all that a sample has to
+/// touch; were its channels in planes, their lines would drive each other out of the cache.
+pub fn quads(channels: usize) -> usize {
+    let numbers = channels + 1;
+    // More than one go by twos.
+    if numbers <= 4 { 1 } else { numbers.next_multiple_of(8) / 4 }
+}
+
 /// Sums over the pixels of a tile, of some samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sums {
-    /// Channel after channel, in each pixel after pixel.
-    pub values: Vec<f32>,
-    /// What the samples of each pixel count together.
-    pub weights: Vec<f32>,
-    /// How many there are of each pixel.
-    pub counts: Vec<u32>,
+    /// Pixel after pixel, a row each: its channels, what its samples count together, and zeros.
+    rows: Vec<Quad>,
+    channels: usize,
+    /// How many samples there are of each pixel.
+    counts: Vec<u32>,
 }
 
 impl Sums {
     pub(super) fn new(pixels: usize, channels: usize) -> Self {
-        Self { values: vec![0.0; pixels * channels], weights: vec![0.0; pixels], counts: vec![0; pixels] }
+        Self { rows: vec![[0.0; 4]; pixels * quads(channels)], channels, counts: vec![0; pixels] }
+    }
+
+    /// Of planes, channel after channel; `None` if they don't fit together.
+    pub fn from_planes(values: &[f32], weights: &[f32], counts: Vec<u32>) -> Option<Self> {
+        let pixels = counts.len();
+        let fits = pixels > 0 && weights.len() == pixels && values.len().is_multiple_of(pixels);
+        let mut sums = fits.then(|| Self::new(pixels, values.len() / pixels))?;
+        sums.counts = counts;
+        for (c, plane) in values.chunks_exact(pixels).chain([weights]).enumerate() {
+            plane.iter().enumerate().for_each(|(pixel, &value)| *sums.number(pixel, c) = value);
+        }
+        Some(sums)
+    }
+
+    /// Pixels.
+    pub fn pixels(&self) -> usize {
+        self.counts.len()
+    }
+
+    /// Channels.
+    pub fn channels(&self) -> usize {
+        self.channels
+    }
+
+    /// How many samples there are of each pixel.
+    pub fn counts(&self) -> &[u32] {
+        &self.counts
+    }
+
+    /// A channel's sums, pixel after pixel; the channel behind the last is what the samples of each pixel count together.
+    pub fn plane(&self, channel: usize) -> impl Iterator<Item = f32> {
+        self.plane_from(channel, 0)
+    }
+
+    /// The same from the pixel `first` on.
+    fn plane_from(&self, channel: usize, first: usize) -> impl Iterator<Item = f32> {
+        let quads = quads(self.channels);
+        let rows = self.rows[first * quads..].chunks_exact(quads);
+        rows.map(move |row| row[channel / 4][channel % 4])
+    }
+
+    fn number(&mut self, pixel: usize, number: usize) -> &mut f32 {
+        let row = pixel * quads(self.channels);
+        &mut self.rows[row + number / 4][number % 4]
     }
 
     /// The same memory, of no samples.
     pub(super) fn cleared(mut self) -> Self {
-        self.values.fill(0.0);
-        self.weights.fill(0.0);
+        self.rows.fill([0.0; 4]);
         self.counts.fill(0);
         self
     }
 
-    #[inline]
+    /// Adds to a pixel a sample of a weight: `value(c)` for each channel c.
     pub(super) fn add(&mut self, pixel: usize, weight: f32, value: impl Fn(usize) -> f32) {
-        let pixels = self.counts.len();
-        for (c, plane) in self.values.chunks_exact_mut(pixels).enumerate() {
-            plane[pixel] += value(c) * weight;
+        for c in 0..self.channels {
+            *self.number(pixel, c) += value(c) * weight;
         }
-        self.weights[pixel] += weight;
+        *self.number(pixel, self.channels) += weight;
         self.counts[pixel] += 1;
     }
 
-    /// The same for eight neighbours from `first` on: `values` are channel by channel.
+    /// The same of a row that [`quads`] describes, if none of its numbers is too great. Is it there now?
     #[inline]
-    pub(super) fn add_eight(&mut self, first: usize, weights: f32x8, values: &[f32x8]) {
-        let pixels = self.counts.len();
-        let add = |numbers: &mut [f32], more: f32x8| {
-            if let Some(eight) = numbers[first..].first_chunk_mut::<LANES>() {
-                *eight = (f32x8::new(*eight) + more).to_array();
+    #[must_use]
+    pub(super) fn add_row(&mut self, pixel: usize, weight: f32, row: &[Quad]) -> bool {
+        let sums = &mut self.rows[pixel * row.len()..][..row.len()];
+        let added = match (sums, row) {
+            ([sums], [row]) => add_quad(sums, row, weight),
+            (sums, row) => {
+                let (sums, row) =
+                    (sums.as_flattened_mut().as_chunks_mut().0, row.as_flattened().as_chunks().0);
+                // Of six layers and three colours, in registers.
+                match (<&mut [_; 2]>::try_from(&mut *sums), <&[_; 2]>::try_from(row)) {
+                    (Ok(sums), Ok(row)) => add_eights(sums, row, weight),
+                    _ => add_eights(sums, row, weight),
+                }
             }
         };
-        for (plane, &value) in self.values.chunks_exact_mut(pixels).zip(values) {
-            add(plane, value * weights);
-        }
-        add(&mut self.weights, weights);
-        self.counts[first..first + LANES].iter_mut().for_each(|count| *count += 1);
+        self.counts[pixel] += u32::from(added);
+        added
     }
 
     /// These and later ones.
     pub fn absorb(&mut self, later: &Self) {
-        for (sum, more) in self.values.iter_mut().zip(&later.values) {
-            *sum += more;
-        }
-        for (sum, more) in self.weights.iter_mut().zip(&later.weights) {
+        for (sum, more) in self.rows.as_flattened_mut().iter_mut().zip(later.rows.as_flattened()) {
             *sum += more;
         }
         for (sum, more) in self.counts.iter_mut().zip(&later.counts) {
@@ -87,10 +142,8 @@ impl Sums {
     /// Divided by their weights, so that what is the same everywhere stays the same; but a few samples of
     /// both signs may weigh nothing together, and are then divided by their number.
     pub fn means(&self, channel: usize, first: usize, out: &mut [f32]) {
-        let pixels = first..first + out.len();
-        let sums = &self.values[channel * self.counts.len()..][pixels.clone()];
-        let weighed = self.weights[pixels.clone()].iter().zip(&self.counts[pixels]);
-        for ((mean, &sum), (&weight, &count)) in out.iter_mut().zip(sums).zip(weighed) {
+        let sums = self.plane_from(channel, first).zip(self.plane_from(self.channels, first));
+        for ((mean, (sum, weight)), &count) in out.iter_mut().zip(sums).zip(&self.counts[first..]) {
             let quotient = sum / if weight > 0.0 { weight } else { count as f32 };
             *mean = if count == 0 { 0.0 } else { quotient };
         }
@@ -102,6 +155,34 @@ impl Sums {
         self.means(channel, pixel, &mut mean);
         mean[0]
     }
+}
+
+/// Is no number too great for a sum?
+#[inline]
+fn is_kept(numbers: f32x8) -> bool {
+    numbers.abs().le(f32x8::splat(GREATEST)).all()
+}
+
+#[inline]
+fn add_quad(sums: &mut Quad, row: &Quad, weight: f32) -> bool {
+    let more = row.map(|number| number * weight);
+    let kept = is_kept(f32x8::of_halves(more, [0.0; 4]));
+    if kept {
+        *sums = std::array::from_fn(|i| sums[i] + more[i]);
+    }
+    kept
+}
+
+#[inline(always)]
+fn add_eights(sums: &mut [[f32; LANES]], row: &[[f32; LANES]], weight: f32) -> bool {
+    let weight = f32x8::splat(weight);
+    let kept = row.iter().all(|&eight| is_kept(f32x8::new(eight) * weight));
+    if kept {
+        for (sums, &eight) in sums.iter_mut().zip(row) {
+            *sums = (f32x8::new(*sums) + f32x8::new(eight) * weight).to_array();
+        }
+    }
+    kept
 }
 
 /// The sum over the blocks `index`·2^`level` … (`index` + 1)·2^`level` − 1.

@@ -3,8 +3,7 @@
 use std::{borrow::Cow, ops::Range};
 
 use super::spread::Spread;
-use super::sums::{self, BLOCK, Node, Sums};
-use crate::simd::{LANES, Real, f32x8};
+use super::sums::{self, BLOCK, Node, Quad, Sums};
 
 /// The greatest value of a sample: no sum of as many as can be counted overflows. Whether a sample is kept
 /// must not depend on those before it, which may be on another machine.
@@ -76,17 +75,16 @@ impl TileFilm {
 
     /// Pixels.
     pub fn pixels(&self) -> usize {
-        self.open.counts.len()
+        self.open.pixels()
     }
 
     /// Channels.
     pub fn channels(&self) -> usize {
-        self.open.values.len() / self.pixels()
+        self.open.channels()
     }
 
     /// Adds to a pixel its next sample, of a weight: `value(c)` for each channel c. Each pixel gets one
     /// before [`finish_sample`](Self::finish_sample).
-    #[inline]
     pub fn add(&mut self, pixel: usize, weight: f32, value: impl Fn(usize) -> f32) {
         if !(0..self.channels()).all(|c| (value(c) * weight).abs() <= GREATEST) {
             self.keep_out(pixel as u32);
@@ -95,19 +93,15 @@ impl TileFilm {
         self.open.add(pixel, weight, value);
     }
 
-    /// The same for eight neighbours from `first` on: `values` are channel by channel.
+    /// The same of a row of [`sums::quads`]: the channels, then 1, then zeros.
     #[inline]
-    pub fn add_eight(&mut self, first: usize, weights: f32x8, values: &[f32x8]) {
-        let kept = |value: &f32x8| (*value * weights).abs().le(f32x8::splat(GREATEST)).all();
-        if values.iter().all(kept) {
-            self.open.add_eight(first, weights, values);
-        } else {
-            for i in 0..LANES {
-                self.add(first + i, weights.lane(i), |c| values[c].lane(i));
-            }
+    pub fn add_row(&mut self, pixel: usize, weight: f32, row: &[Quad]) {
+        if !self.open.add_row(pixel, weight, row) {
+            self.keep_out(pixel as u32);
         }
     }
 
+    #[cold]
     fn keep_out(&mut self, pixel: u32) {
         self.invalid += 1;
         let place = (pixel, self.samples.end);
@@ -164,17 +158,15 @@ impl TileFilm {
     /// What contradicts itself in a film that was not made here, if anything does.
     pub fn defect(&self) -> Option<&'static str> {
         let Range { start, end } = self.samples;
-        let (pixels, values) = (self.pixels(), self.open.values.len());
-        let fits = |sums: &Sums| {
-            (sums.values.len(), sums.weights.len(), sums.counts.len()) == (values, pixels, pixels)
-        };
-        if pixels == 0 || values == 0 || !values.is_multiple_of(pixels) {
+        let (pixels, channels) = (self.pixels(), self.channels());
+        let fits = |sums: &Sums| (sums.pixels(), sums.channels()) == (pixels, channels);
+        if pixels == 0 || channels == 0 {
             return Some("a tile has no pixels");
         }
         if start > end || !start.is_multiple_of(BLOCK) {
             return Some("a tile's samples don't begin with a block");
         }
-        if !fits(&self.open) || !self.nodes.iter().all(|node| fits(&node.sums)) {
+        if !self.nodes.iter().all(|node| fits(&node.sums)) {
             return Some("sums are of different sizes");
         }
         let mut next = u64::from(start / BLOCK);
@@ -205,29 +197,35 @@ mod tests {
     fn what_would_overflow_a_sum_is_kept_out() {
         let film = filled(0, [1.0, 3e38, 3.0, -1e29, 2e28]);
         assert_eq!((film.invalid, film.first_invalid), (2, Some((0, 1))));
-        assert_eq!(film.total().counts, [3]);
+        assert_eq!(film.total().counts(), [3]);
     }
 
     #[test]
-    fn eight_pixels_at_once_are_eight_one_by_one() {
-        let (mut eights, mut ones) = (TileFilm::new(16, 3, 0), TileFilm::new(16, 3, 0));
-        for sample in 0..20 {
-            let value = |pixel: usize, channel: usize| match (sample, pixel, channel) {
-                (3, 11, 2) => f32::NAN,
-                (7, 2, 0) => f32::MAX,
-                _ => noise((sample * 16 + pixel) as u32 * 3 + channel as u32),
-            };
-            let weight = |pixel: usize| if pixel == 5 { -0.5 } else { 0.75 + pixel as f32 };
-            for first in [0, 8] {
-                let values: Vec<f32x8> = (0..3).map(|c| f32x8::from_fn(|i| value(first + i, c))).collect();
-                eights.add_eight(first, f32x8::from_fn(|i| weight(first + i)), &values);
+    fn rows_are_channels_one_by_one() {
+        // One quad, a pair that is filled, and two pairs.
+        for channels in [1, 3, 4, 7, 8, 13] {
+            let (mut rows, mut ones) = (TileFilm::new(9, channels, 0), TileFilm::new(9, channels, 0));
+            for sample in 0..20 {
+                let value = |pixel: usize, channel: usize| match (sample, pixel, channel) {
+                    (3, 8, 2) => f32::NAN,
+                    (7, 2, 0) => f32::MAX,
+                    _ => noise(((sample * 9 + pixel) * channels + channel) as u32),
+                };
+                let weight = |pixel: usize| if pixel == 5 { -0.5 } else { 0.75 + pixel as f32 };
+                for pixel in 0..9 {
+                    let mut row = vec![[0.0; 4]; sums::quads(channels)];
+                    (0..channels).for_each(|c| row[c / 4][c % 4] = value(pixel, c));
+                    row[channels / 4][channels % 4] = 1.0;
+                    rows.add_row(pixel, weight(pixel), &row);
+                    ones.add(pixel, weight(pixel), |c| value(pixel, c));
+                }
+                rows.finish_sample();
+                ones.finish_sample();
             }
-            (0..16).for_each(|pixel| ones.add(pixel, weight(pixel), |c| value(pixel, c)));
-            eights.finish_sample();
-            ones.finish_sample();
+            let kept_out = if channels > 2 { (2, Some((2, 7))) } else { (1, Some((2, 7))) };
+            assert_eq!((ones.invalid, ones.first_invalid), kept_out);
+            assert_eq!(rows, ones);
         }
-        assert_eq!((ones.invalid, ones.first_invalid), (2, Some((2, 7))));
-        assert_eq!(eights, ones);
     }
 
     fn noise(sample: u32) -> f32 {
@@ -282,7 +280,7 @@ mod tests {
     #[test]
     fn up_to_a_block_samples_are_added_one_after_the_other() {
         let sum = (0..BLOCK).map(noise).fold(0.0, |sum, x| sum + x);
-        assert_eq!(filled(0, (0..BLOCK).map(noise)).total().values, [sum]);
+        assert!(filled(0, (0..BLOCK).map(noise)).total().plane(0).eq([sum]));
     }
 
     #[test]
@@ -320,7 +318,9 @@ mod tests {
         assert!(wrong(|film| film.nodes.clear()).is_some());
         assert!(wrong(|film| film.nodes[0].index = 1).is_some());
         assert!(wrong(|film| film.nodes[0].level = 40).is_some());
-        assert!(wrong(|film| film.open.weights.clear()).is_some());
-        assert!(wrong(|film| film.open.counts.clear()).is_some());
+        assert!(wrong(|film| film.open = Sums::new(2, 1)).is_some());
+        assert!(wrong(|film| film.open = Sums::new(1, 2)).is_some());
+        assert!(wrong(|film| *film = TileFilm::new(0, 1, 0)).is_some());
+        assert!(wrong(|film| *film = TileFilm::new(1, 0, 0)).is_some());
     }
 }

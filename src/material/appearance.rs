@@ -299,6 +299,20 @@ impl<'t, R: Real> Appearance<'t, R> {
         }
     }
 
+    /// The weight of [`sample`](Self::sample) where it is valid, else 0.
+    #[inline]
+    pub fn sampled_weight(&self, lobe: R, u: (R, R)) -> Vector3<R> {
+        match (&self.first, self.others.is_empty()) {
+            (Placed { bsdf: Bsdf::Lambert(model), view: View::Plain | View::Turned(_), wo, .. }, true) => {
+                model.sampled_weight(*wo, u)
+            }
+            _ => {
+                let sample = self.sample(lobe, u);
+                sample.weight.only(sample.valid)
+            }
+        }
+    }
+
     /// What is left of the number that chose a layer: uniform again in [0, 1).
     #[inline]
     fn rest(&self, index: usize, lobe: R) -> R {

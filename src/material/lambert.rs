@@ -45,6 +45,18 @@ impl<R: Real> Lambert<R> {
             valid: wo.z.gt(R::zero()) & pdf.gt(R::zero()),
         }
     }
+
+    /// The weight of [`sample`](Self::sample) where it is valid, else 0.
+    #[inline]
+    pub(super) fn sampled_weight(&self, wo: Vector3<R>, (u, v): (R, R)) -> Vector3<R> {
+        // Only next to the rim of the square can a cosine be rounded to 0: elsewhere the direction is not needed.
+        let rim = |x: R| (x + x - R::one()).abs().ge(R::splat(0.999));
+        if (rim(u) | rim(v)).none() {
+            return self.reflectance.only(wo.z.gt(R::zero()));
+        }
+        let sample = self.sample(wo, (u, v));
+        sample.weight.only(sample.valid)
+    }
 }
 
 #[inline]

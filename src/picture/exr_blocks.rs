@@ -6,11 +6,19 @@
 use std::io::{Seek, Write};
 
 use exr::{
-    block::{chunk::Chunk, write, writer::ChunksWriter},
+    block::{
+        UncompressedBlock,
+        chunk::{Chunk, CompressedBlock, CompressedScanLineBlock},
+        write,
+        writer::ChunksWriter,
+    },
     image::write::layers::{LayersWriter, WritableLayers},
-    prelude::{AnyChannels, Error, FlatSamples, Image, Layer},
+    meta::header::Header,
+    prelude::{AnyChannels, Compression, Error, FlatSamples, Image, Layer},
 };
 use rayon::prelude::*;
+
+use super::exr_zip;
 
 /// Blocks for each thread that are held unpacked at a time.
 const AHEAD: usize = 2;
@@ -33,13 +41,28 @@ pub(super) fn save(
             if some.is_empty() {
                 return Ok(());
             }
-            let pack = |(number, block): (usize, exr::block::UncompressedBlock)| {
-                Ok((number, block.compress_to_chunk(headers)?))
-            };
+            let pack = |(number, block)| Ok((number, pack(block, headers)?));
             let packed: Vec<(usize, Chunk)> = some.into_par_iter().map(pack).collect::<Result<_, Error>>()?;
             for (number, chunk) in packed {
                 writer.write_chunk(number, chunk)?;
             }
         }
     })
+}
+
+/// A block of scan lines, packed as its header says.
+fn pack(block: UncompressedBlock, headers: &[Header]) -> Result<Chunk, Error> {
+    let index = block.index;
+    let header = &headers[index.layer];
+    // Bytes are as the processor has them, and in the file little-endian.
+    let ours = cfg!(target_endian = "little")
+        && matches!(header.compression, Compression::ZIP1 | Compression::ZIP16);
+    if !ours {
+        return block.compress_to_chunk(headers);
+    }
+    let y_coordinate = index.pixel_position.y() as i32 + header.own_attributes.layer_position.y();
+    let compressed_pixels_le = exr_zip::pack(&block.data).unwrap_or(block.data);
+    let compressed_block =
+        CompressedBlock::ScanLine(CompressedScanLineBlock { y_coordinate, compressed_pixels_le });
+    Ok(Chunk { layer_index: index.layer, compressed_block })
 }

@@ -7,6 +7,7 @@ mod encode;
 mod error;
 mod exr_blocks;
 mod exr_header;
+mod exr_zip;
 mod limits;
 mod openexr;
 mod srgb;

@@ -34,7 +34,9 @@ impl<R: Real, O: Outgoing<R>> Outgoing<R> for Beside<'_, O> {
 
 /// Channels in the order of the description.
 pub(super) struct AovIntegrator {
-    pub(super) channels: Vec<AovChannel>,
+    channels: Vec<AovChannel>,
+    /// Does any of them ask for [`counts`]?
+    counted: bool,
 }
 
 fn suffixes(kind: Aov) -> &'static [&'static str] {
@@ -58,17 +60,20 @@ impl Integrator for AovIntegrator {
         0
     }
 
-    /// Nothing is 0, but for the way to it through the tree.
+    /// Nothing is 0, which is said, but for the way to it through the tree.
     fn miss<R: Real>(&self, scene: &Scene, _: &Path<R>, ray: Line<R>, out: &mut impl Outgoing<R>) {
         let counts = self.counts(scene, ray);
         let mut channel = 0;
         for c in &self.channels {
-            match c.kind {
-                Aov::Nodes => out.add(channel, counts.0),
-                Aov::Primitives => out.add(channel, counts.1),
-                _ => {}
+            let value = match c.kind {
+                Aov::Nodes => counts.0,
+                Aov::Primitives => counts.1,
+                _ => R::zero(),
+            };
+            for _ in suffixes(c.kind) {
+                out.add(channel, value);
+                channel += 1;
             }
-            channel += suffixes(c.kind).len();
         }
     }
 
@@ -90,8 +95,10 @@ impl Integrator for AovIntegrator {
                 Aov::GeoNormal => put(&components(surface.n_g)),
                 Aov::ShNormal => put(&components(surface.frame.n)),
                 Aov::DirectionalAlbedo => {
-                    let (lobe, _) = vertex.path.random(2, 1);
-                    put(&components(vertex.albedo(lobe, vertex.path.random(2, 0))));
+                    let unused = (R::zero(), R::zero());
+                    let random = |asked, index| if asked { vertex.path.random(2, index) } else { unused };
+                    let (lobe, _) = random(vertex.chooses_lobes(), 1);
+                    put(&components(vertex.albedo(lobe, random(vertex.is_smooth(), 0))));
                 }
                 Aov::MaterialId => put(&[R::splat(vertex.material.0 as f32 + 1.0)]),
                 Aov::PrimitiveId => put(&[R::from_int(vertex.primitive) + R::one()]),
@@ -103,20 +110,28 @@ impl Integrator for AovIntegrator {
 }
 
 impl AovIntegrator {
-    /// Nodes and primitives that rays are tested against, each by itself, if anyone asks: what packets do
-    /// depends on their neighbours.
-    fn counts<R: Real>(&self, scene: &Scene, (org, dir): Line<R>) -> (R, R) {
-        if !self.channels.iter().any(|c| matches!(c.kind, Aov::Nodes | Aov::Primitives)) {
-            return (R::zero(), R::zero());
-        }
-        let mut lanes = [Counts::default(); LANES];
-        for (i, counts) in lanes[..R::LANES].iter_mut().enumerate() {
-            let mut traversal = Traversal::new(Counts::default());
-            scene.closest_hit(&Ray::new(org.lane(i), dir.lane(i), 0.0, f32::INFINITY), &mut traversal);
-            *counts = traversal.tally;
-        }
-        (R::from_fn(|i| lanes[i].nodes as f32), R::from_fn(|i| lanes[i].primitives as f32))
+    /// Of these channels.
+    pub(super) fn new(channels: Vec<AovChannel>) -> Self {
+        let counted = channels.iter().any(|c| matches!(c.kind, Aov::Nodes | Aov::Primitives));
+        Self { channels, counted }
     }
+
+    #[inline]
+    fn counts<R: Real>(&self, scene: &Scene, ray: Line<R>) -> (R, R) {
+        if self.counted { counts(scene, ray) } else { (R::zero(), R::zero()) }
+    }
+}
+
+/// Nodes and primitives that rays are tested against, each by itself: what packets do depends on their neighbours.
+#[cold]
+fn counts<R: Real>(scene: &Scene, (org, dir): Line<R>) -> (R, R) {
+    let mut lanes = [Counts::default(); LANES];
+    for (i, counts) in lanes[..R::LANES].iter_mut().enumerate() {
+        let mut traversal = Traversal::new(Counts::default());
+        scene.closest_hit(&Ray::new(org.lane(i), dir.lane(i), 0.0, f32::INFINITY), &mut traversal);
+        *counts = traversal.tally;
+    }
+    (R::from_fn(|i| lanes[i].nodes as f32), R::from_fn(|i| lanes[i].primitives as f32))
 }
 
 fn components<R: Real>(v: Vector3<R>) -> [R; 3] {

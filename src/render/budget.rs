@@ -81,7 +81,7 @@ impl Budget {
 /// Names of the channels that are summed: colours, and what the camera sees besides.
 pub fn channels(description: &SceneDescription) -> Vec<String> {
     let first = match &description.integrator {
-        Integrator::Aov { channels } => AovIntegrator { channels: channels.clone() }.channels(),
+        Integrator::Aov { channels } => AovIntegrator::new(channels.clone()).channels(),
         _ => ["R", "G", "B"].map(String::from).into(),
     };
     first.into_iter().chain(aov::layers(&description.aovs)).collect()
@@ -95,13 +95,18 @@ fn film(description: &SceneDescription, keeps_sums: bool) -> u64 {
         PixelFormat::Rgb | PixelFormat::Luminance => 0,
         PixelFormat::Rgba | PixelFormat::LuminanceAlpha => 1,
     };
-    // A weight and a count beside the sums; the block that is open, and one node for each binary digit of the
+    // A row, which has the weight, and a count; the block that is open, and one node for each binary digit of the
     // number of blocks.
     let blocks = description.sensor.sampler.sample_count / sums::BLOCK;
-    let sums = (channels + 2) * FLOAT * (1 + u64::from(blocks.count_ones()));
+    let sums = (row(channels) + 1) * FLOAT * (1 + u64::from(blocks.count_ones()));
     // The picture, its copy in the order of the file, and the file.
     let picture = (channels + alpha) * FLOAT * 3;
     pixels * (sums + picture + if keeps_sums { 3 * sums } else { 0 })
+}
+
+/// Numbers in a row of sums.
+fn row(channels: u64) -> u64 {
+    4 * sums::quads(channels as usize) as u64
 }
 
 /// Of one thread.
@@ -116,7 +121,7 @@ fn wavefront(description: &SceneDescription) -> u64 {
         }
         Integrator::Aov { .. } => (0, 1),
     };
-    let channels = (channels(description).len() as u64).next_multiple_of(4);
+    let channels = row(channels(description).len() as u64);
     // Rows of paths, now and next; hits, keys and order; sums of the round and of the pixel; connections.
     let path = 64 * (1 + branches) + 28 + 2 * channels * FLOAT + shadow_rays * 11 * FLOAT;
     // Where paths branch there are more of them than pixels, say twice as many; and an arena keeps what has been

@@ -5,8 +5,8 @@ use bumpalo::collections::Vec as BumpVec;
 use super::census::Ends;
 use super::connections::Connections;
 use super::integrator::{End, Outgoing, Path};
-use super::layers::Quad;
 use super::rows::{Packet, Paths, reserve};
+use crate::film::sums::Quad;
 use crate::simd::{LANES, Mask, Mask8, Real, Vec3x8, f32x8, u32x8};
 
 /// What the groups of a round have said, by slot.

@@ -116,7 +116,7 @@ fn with_integrator<T: Task>(scene: &Scene, task: T) -> T::Done {
         scene::Integrator::Irradiance { max_depth, rr_depth } => {
             task.run(&Irradiance { paths: paths(max_depth, rr_depth, false), receiver: None })
         }
-        scene::Integrator::Aov { channels } => task.run(&aov::AovIntegrator { channels }),
+        scene::Integrator::Aov { channels } => task.run(&aov::AovIntegrator::new(channels)),
     }
 }
 

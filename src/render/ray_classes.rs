@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 use super::camera_rays;
 use super::integrator::Path;
-use crate::compile::Scene;
+use crate::compile::{Asked, Scene};
 use crate::geometry::{Aabb, Hit, PrimitiveId, REACH, Ray32, offset_origin};
 use crate::light::{Light, Reach, Receiver};
 use crate::math::{Frame, Sampler, warp};
@@ -111,7 +111,7 @@ fn arrive(scene: &Scene, rays: &[Ray32], keys: &[u32]) -> Vec<Point> {
         .map(|((ray, hit), &key)| {
             let ray = ray.ray();
             let (org, dir) = (Vector3::from(ray.org), Vector3::from(ray.dir));
-            let surface = scene.surface((org, dir), (hit.t, hit.u, hit.v), hit.primitive.0, false);
+            let surface = scene.surface((org, dir), (hit.t, hit.u, hit.v), hit.primitive.0, Asked::default());
             let n = if surface.n_g.dot(dir) > 0.0 { -surface.n_g } else { surface.n_g };
             Point { position: surface.position, extent: surface.extent, n, key }
         })

@@ -157,7 +157,7 @@ fn beside<I: Integrator>(
     say: impl FnOnce(&AovIntegrator, &mut Beside<'_, Said>),
 ) {
     if path.depth == 0 && !scene.aovs.is_empty() {
-        let aovs = AovIntegrator { channels: scene.aovs.clone() };
+        let aovs = AovIntegrator::new(scene.aovs.clone());
         say(&aovs, &mut Beside { out: said, first: integrator.channels().len() });
     }
 }

@@ -2,7 +2,7 @@
 
 use super::departure::{Connection, Departure, distinct};
 use super::integrator::{Line, Path};
-use crate::compile::{Scene, Surface};
+use crate::compile::{Asked, Scene, Surface};
 use crate::light::{Light, LightId, SurfacePoint, power_heuristic};
 use crate::material::{Appearance, Branch, MaterialId, Point};
 use crate::simd::{Bits, Mask, Real, Vector3};
@@ -61,7 +61,9 @@ impl<'s, R: Real> Vertex<'s, R> {
         material: MaterialId,
     ) -> Self {
         let oriented = scene.materials.is_oriented(material);
-        let surface = scene.surface((org, dir), (t, u, v), primitive, oriented);
+        // Layers are said of what the camera sees, and of nothing behind it.
+        let asked = Asked { oriented, mapped: scene.shows_uv && path.depth == 0 };
+        let surface = scene.surface((org, dir), (t, u, v), primitive, asked);
         let wo = surface.frame.to_local(-dir);
         let tangents = match oriented {
             true => surface.partials.map(|partial| surface.frame.to_local(partial)),
@@ -118,8 +120,7 @@ impl<'s, R: Real> Vertex<'s, R> {
     /// What a BSDF sample weighs: on average the directional albedo, ∫ f |cos θ_i| dω.
     #[inline]
     pub(super) fn albedo(&self, lobe: R, u: (R, R)) -> Vector3<R> {
-        let sample = self.appearance.sample(lobe, u);
-        sample.weight.only(sample.valid)
+        self.appearance.sampled_weight(lobe, u)
     }
 
     /// Is there anything but delta lobes? If not, [`scatter`](Self::scatter) does not look at its pair of numbers.

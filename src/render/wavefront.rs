@@ -15,7 +15,7 @@ use super::connections::Connections;
 use super::frame::Visit;
 use super::group::{Group, Outputs};
 use super::integrator::{Integrator, Path};
-use super::layers::{Layers, Quad};
+use super::layers::Layers;
 use super::rows::{Hits, Packet, Paths, fill, reserve};
 use super::sort::{Sorter, for_each_unsorted_group};
 use super::statistics::{Stage, Statistics};
@@ -23,10 +23,13 @@ use super::trace::{self, Route};
 use super::vertex::Vertex;
 use crate::bvh::Tracer;
 use crate::compile::Scene;
-use crate::film::{Tile, TileFilm};
+use crate::film::{
+    Tile, TileFilm,
+    sums::{Quad, quads},
+};
 use crate::geometry::PrimitiveId;
 use crate::material::MaterialId;
-use crate::simd::{Bits, LANES, Real, f32x8, transpose, u32x8};
+use crate::simd::{Bits, LANES, f32x8, u32x8};
 
 /// What one thread needs to render tiles, one after the other.
 pub(super) struct Wavefront<'a, I> {
@@ -46,12 +49,10 @@ pub(super) struct Wavefront<'a, I> {
     out: Outputs<'a>,
     /// What the sample of each pixel counts, in the order of the first paths.
     weights: BumpVec<'a, f32>,
-    /// What a pixel's paths have brought, four channels at a time, pixel after pixel.
+    /// What a pixel's paths have brought, pixel after pixel, each in a row as the film has them.
     sums: BumpVec<'a, Quad>,
-    /// In a pixel of `sums`.
+    /// In a row of `sums`.
     quads: usize,
-    /// Eight pixels' channels, one after the other.
-    columns: BumpVec<'a, f32x8>,
     /// Looks on where rays are counted, not rendered.
     probe: Option<Box<Probe>>,
 }
@@ -60,7 +61,6 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     pub(super) fn new(arena: &'a Bump, scene: &'a Scene, integrator: &'a I, settings: &Settings) -> Self {
         let (lit, channels) = (integrator.channels().len(), integrator.all_channels(scene).len());
         let layers = (channels > lit).then(|| Layers::new(arena, scene, lit..channels));
-        let quads = layers.as_ref().map_or(lit.div_ceil(4), Layers::quads);
         Self {
             scene,
             integrator,
@@ -83,8 +83,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             },
             weights: BumpVec::new_in(arena),
             sums: BumpVec::new_in(arena),
-            quads,
-            columns: BumpVec::new_in(arena),
+            quads: quads(channels),
             probe: None,
         }
     }
@@ -108,25 +107,10 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     }
 
     /// Adds what the paths have brought to the film.
-    fn deliver(&mut self, pixels: &Pixels, film: &mut TileFilm) {
-        let quads = self.quads;
-        let (eights, rest) = pixels.paths.as_chunks::<LANES>();
-        for (packet, paths) in eights.iter().enumerate() {
-            self.columns.clear();
-            for quad in 0..quads {
-                let row = |i: usize| {
-                    let [a, b, c, d] = self.sums[paths[i] as usize * quads + quad];
-                    f32x8::new([a, b, c, d, 0.0, 0.0, 0.0, 0.0])
-                };
-                self.columns.extend_from_slice(&transpose(std::array::from_fn(row))[..4]);
-            }
-            let weights = f32x8::from_fn(|i| self.weights[paths[i] as usize]);
-            film.add_eight(packet * LANES, weights, &self.columns[..self.channels]);
-        }
-        for (i, &path) in rest.iter().enumerate() {
-            let values = &self.sums[path as usize * quads..];
-            let pixel = eights.len() * LANES + i;
-            film.add(pixel, self.weights[path as usize], |c| values[c / 4][c % 4]);
+    fn deliver(&self, pixels: &Pixels, film: &mut TileFilm) {
+        for (pixel, &path) in pixels.paths.iter().enumerate() {
+            let path = path as usize;
+            film.add_row(pixel, self.weights[path], &self.sums[path * self.quads..][..self.quads]);
         }
     }
 
@@ -149,8 +133,16 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     /// One path from each pixel.
     fn start(&mut self, pixels: &Pixels, sample: u32) {
         let len = pixels.paths.len();
-        self.sums.clear();
+        // Layers write whole rows, in the first round.
+        let blank = self.layers.is_none() || self.integrator.begins();
+        if blank {
+            self.sums.clear();
+        }
         self.sums.resize(len * self.quads, [0.0; 4]);
+        if blank {
+            let one = self.channels;
+            self.sums.chunks_exact_mut(self.quads).for_each(|row| row[one / 4][one % 4] = 1.0);
+        }
         self.weights.clear();
         self.paths.reserve(len);
         let slots = u32x8::from_fn(|i| i as u32);
@@ -255,7 +247,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             if key == miss {
                 integrator.miss(scene, &path, (org, dir), &mut group);
                 if let Some(layers) = &mut layers {
-                    layers.put(&pixels[..slots.len()], sums, |aovs, out| {
+                    layers.put(pixels, sums, |aovs, out| {
                         aovs.miss(scene, &path, (org, dir), out);
                     });
                 }
@@ -265,7 +257,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             let vertex = Vertex::new(scene, path, (org, dir), tuv, primitive, MaterialId(key));
             integrator.shade(scene, &vertex, &mut group);
             if let Some(layers) = &mut layers {
-                layers.put(&pixels[..slots.len()], sums, |aovs, out| aovs.shade(scene, &vertex, out));
+                layers.put(pixels, sums, |aovs, out| aovs.shade(scene, &vertex, out));
             }
         };
         if self.sort {

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::{Exhibit, Expected, aim::Random};
 use crate::bvh::Traversal;
-use crate::compile::Scene;
+use crate::compile::{Asked, Scene};
 use crate::geometry::{Hit, PrimitiveId, Ray, Ray32, offset_origin};
 use crate::simd::Vector3;
 
@@ -66,7 +66,7 @@ fn depart(scene: &Scene, rays: &[Ray32], seed: u64) -> Departures {
 /// To both sides, any way and nearly along the surface.
 fn leave(scene: &Scene, ray: &Ray, hit: &Hit, random: &mut Random) -> [Ray; 4] {
     let (org, dir) = (Vector3::from(ray.org), Vector3::from(ray.dir));
-    let surface = scene.surface((org, dir), (hit.t, hit.u, hit.v), hit.primitive.0, false);
+    let surface = scene.surface((org, dir), (hit.t, hit.u, hit.v), hit.primitive.0, Asked::default());
     let n = glam::Vec3::from(surface.n_g);
     [(1.0, 1.0), (-1.0, 1.0), (1.0, 1e-3), (-1.0, 1e-3)].map(|(side, steep)| {
         let any = random.vector();

@@ -4,7 +4,10 @@
 //! outward even where the map mirrors.
 
 use super::{Instances, Placed};
-use crate::compile::surfaces::{Surface, Surfaces, partials::frame_along};
+use crate::compile::{
+    Asked,
+    surfaces::{Surface, Surfaces, partials::frame_along},
+};
 use crate::geometry::{AffineLanes, PrimitiveId};
 use crate::light::LightId;
 use crate::material::MaterialId;
@@ -28,7 +31,7 @@ impl Instances {
         others: &Surfaces,
         line: (Vector3<R>, Vector3<R>),
         ((t, u, v), primitive): Met<R>,
-        oriented: bool,
+        asked: Asked,
     ) -> Surface<R> {
         let all = (1u32 << R::LANES) - 1;
         let set = |f: &dyn Fn(usize) -> bool| (0..R::LANES).fold(0, |set, i| set | u32::from(f(i)) << i);
@@ -43,7 +46,7 @@ impl Instances {
             let safe = safe(all & !rest);
             let weights = (t, R::from_fn(|i| u.lane(safe(i))), R::from_fn(|i| v.lane(safe(i))));
             let primitive = R::Bits::from_fn(|i| primitive.lane(safe(i)));
-            surface = Some(others.at(line, weights, primitive, oriented));
+            surface = Some(others.at(line, weights, primitive, asked));
         }
         while rest != 0 {
             let placed = |i: usize| &self.placed[(primitive.lane(i) - self.first) as usize];
@@ -54,13 +57,13 @@ impl Instances {
             let inside = u.to_bits();
             let inside = R::Bits::from_fn(|i| inside.lane(safe(i)));
             let surfaces = &self.groups[group as usize].surfaces;
-            let new = at(surfaces, |i| placed(safe(i)), line, (t, inside), oriented);
+            let new = at(surfaces, |i| placed(safe(i)), line, (t, inside), asked);
             surface = Some(match surface {
                 Some(old) => Surface::select(R::Mask::from_bitmask(same), new, old),
                 None => new,
             });
         }
-        surface.unwrap_or_else(|| others.at(line, (t, u, v), primitive, oriented))
+        surface.unwrap_or_else(|| others.at(line, (t, u, v), primitive, asked))
     }
 }
 
@@ -71,13 +74,13 @@ fn at<'p, R: Real>(
     placed: impl Fn(usize) -> &'p Placed,
     (org, dir): (Vector3<R>, Vector3<R>),
     (t, inside): (R, R::Bits),
-    oriented: bool,
+    asked: Asked,
 ) -> Surface<R> {
     let to_group = AffineLanes::<R>::from_fn(|i| &placed(i).placement.to_group);
     let to_world = AffineLanes::<R>::from_fn(|i| &placed(i).placement.to_world);
     let line = (to_group.point(org), to_group.direction(dir));
     let (u, v) = surfaces.barycentric(line, inside);
-    let there = surfaces.at(line, (t, u, v), inside, oriented);
+    let there = surfaces.at(line, (t, u, v), inside, asked);
     let position = to_world.point(there.position);
     let normal = |n: Vector3<R>| to_group.normal_back(n).normalize();
     let (n_g, n_s) = (normal(there.n_g), normal(there.frame.n));
@@ -87,7 +90,7 @@ fn at<'p, R: Real>(
         // Rounding on the way to the group's space and back is that of the sizes on the way.
         extent: to_world.reach(there.extent + to_group.magnitude(position)),
         n_g,
-        frame: if oriented { frame_along(n_s, partials[0]) } else { Frame::around(n_s) },
+        frame: if asked.oriented { frame_along(n_s, partials[0]) } else { Frame::around(n_s) },
         partials,
         uv: there.uv,
         light: R::Bits::splat(LightId::NONE.0),

@@ -39,3 +39,19 @@ fn samples_are_distributed_by_the_density() {
         proof::sampling_matches_pdf(&lambert(), proof::at(degrees));
     }
 }
+
+#[test]
+fn a_weight_is_that_of_the_sample() {
+    let model = Lambert { reflectance: Vector3::<f32>::splat(RHO) };
+    // Midpoints, the rim of the square, and the edges of what counts as rim.
+    let inside = (0..64u8).map(|i| (f32::from(i) + 0.5) / 64.0);
+    let rim = [0.0, f32::MIN_POSITIVE, 0.000_49, 0.000_51, 0.999_49, 0.999_51, 1.0 - f32::EPSILON / 2.0];
+    let numbers: Vec<f32> = inside.chain(rim).collect();
+    for wo in [proof::at(30.0), -proof::at(30.0)].map(Vector3::splat) {
+        for (u, v) in numbers.iter().flat_map(|&u| numbers.iter().map(move |&v| (u, v))) {
+            let sample = model.sample(wo, (u, v));
+            let (weight, expected) = (model.sampled_weight(wo, (u, v)), sample.weight.only(sample.valid));
+            assert_eq!((weight.x, weight.y, weight.z), (expected.x, expected.y, expected.z), "{u} {v}");
+        }
+    }
+}

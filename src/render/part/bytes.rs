@@ -126,13 +126,21 @@ impl Writer {
 
     fn floats(&mut self, floats: &[f32]) {
         self.u32(floats.len() as u32);
-        self.0.extend(floats.iter().flat_map(|x| x.to_bits().to_le_bytes()));
+        self.bare(floats.iter().copied());
+    }
+
+    /// Without their number.
+    fn bare(&mut self, floats: impl Iterator<Item = f32>) {
+        self.0.extend(floats.flat_map(|x| x.to_bits().to_le_bytes()));
     }
 
     fn sums(&mut self, sums: &Sums) {
-        self.floats(&sums.values);
-        self.floats(&sums.weights);
-        self.words(&sums.counts);
+        let (pixels, channels) = (sums.pixels(), sums.channels());
+        self.u32((pixels * channels) as u32);
+        (0..channels).for_each(|channel| self.bare(sums.plane(channel)));
+        self.u32(pixels as u32);
+        self.bare(sums.plane(channels));
+        self.words(sums.counts());
     }
 
     fn tile(&mut self, PartTile { number, film, statistics }: &PartTile) {
@@ -218,7 +226,7 @@ impl Reader<'_> {
     }
 
     fn sums(&mut self) -> Option<Sums> {
-        Some(Sums { values: self.floats()?, weights: self.floats()?, counts: self.words()? })
+        Sums::from_planes(&self.floats()?, &self.floats()?, self.words()?)
     }
 
     fn part(&mut self) -> Option<Part> {
