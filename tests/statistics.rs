@@ -19,7 +19,7 @@ fn told(out: &str, more: &[&str]) -> String {
 
 #[test]
 fn machines_are_told_what_people_are() {
-    let folder = folder("statistics");
+    let folder = folder("statistics/told");
     let out = path(&folder, "a.exr");
     let json: serde_json::Value = serde_json::from_str(&told(&out, &["--json"])).expect("JSON");
     let stats = &json["stats"];

@@ -87,7 +87,7 @@ fn sentences_are_broken_between_words() {
 
 #[test]
 fn what_is_wrong_with_a_command_line_is_broken_between_words() {
-    let words = "render a.xml -o a.exr --checkpoint b --resume c --shard 1/2 --pixel 3,4";
+    let words = "render a.xml -o a.exr --checkpoint b.exr --resume c.exr --shard 1/2 --pixel 3,4";
     let Some(told) = on_a_terminal(words, "1") else { return };
     assert!(told.lines().all(|line| line.chars().count() <= COLUMNS), "{told}");
     let piped = stderr(&packlight(&words.split(' ').collect::<Vec<_>>()));

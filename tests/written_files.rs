@@ -11,7 +11,7 @@ use program::{fails, folder, packlight, path, stderr, triangle};
 
 #[test]
 fn layers_stand_beside_the_picture_under_names_that_others_know() {
-    let folder = folder("layers");
+    let folder = folder("layers/names");
     let scene = triangle(&folder);
     let (plain, layered) = (path(&folder, "plain.exr"), path(&folder, "layered.exr"));
     let size = ["--width", "16", "--spp", "2", "--quiet"];
