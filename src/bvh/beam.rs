@@ -173,60 +173,29 @@ mod tests {
 
     use super::*;
     use crate::bvh::Child;
-    use crate::geometry::{Aabb, Ray, Rayx8};
-    use crate::simd::{LANES, Mask, Vector3};
-
-    /// A repeatable sequence.
-    struct Random(u32);
-
-    impl Random {
-        fn bits(&mut self) -> u32 {
-            self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            self.0 >> 8
-        }
-
-        fn below(&mut self, n: usize) -> usize {
-            (self.bits() >> 8) as usize % n
-        }
-
-        /// In [−1, 1).
-        fn signed(&mut self) -> f32 {
-            self.bits() as f32 / 8_388_608.0 - 1.0
-        }
-
-        fn vector(&mut self) -> Vec3 {
-            Vec3::new(self.signed(), self.signed(), self.signed())
-        }
-    }
+    use crate::geometry::{
+        Aabb, Ray, Rayx8,
+        seeds::{Random, packet},
+    };
+    use crate::simd::{LANES, Mask};
 
     /// Rays with one sign along each axis, each at a corner of one of the boxes, from one origin or from several.
     fn aimed(random: &mut Random, boxes: &[Aabb; 8], one_origin: bool) -> Rayx8 {
         let side = random.vector();
         let origin = |random: &mut Random| side * 8.0 + if one_origin { Vec3::ZERO } else { random.vector() };
-        let rays: [Ray; LANES] = std::array::from_fn(|_| {
-            let (bounds, org) = (&boxes[random.below(8)], origin(random));
+        packet(&std::array::from_fn(|_| {
+            let (bounds, org) = (&boxes[random.below(8) as usize], origin(random));
             let corners = [bounds.min, bounds.max];
-            let corner = Vec3::from_array(std::array::from_fn(|axis| corners[random.below(2)][axis]));
+            let corner =
+                Vec3::from_array(std::array::from_fn(|axis| corners[random.below(2) as usize][axis]));
             Ray::new(org, corner - org, 0.0, f32::INFINITY)
-        });
-        let lanes = |of: &dyn Fn(&Ray) -> f32| f32x8::from_fn(|i| of(&rays[i]));
-        let vector = |of: &dyn Fn(&Ray) -> Vec3| Vector3 {
-            x: lanes(&|ray| of(ray).x),
-            y: lanes(&|ray| of(ray).y),
-            z: lanes(&|ray| of(ray).z),
-        };
-        RayLanes::new(
-            vector(&|ray| ray.org),
-            vector(&|ray| ray.dir),
-            lanes(&|_| 0.0),
-            lanes(&|ray| ray.t_far),
-        )
+        }))
     }
 
     /// Corners are where slabs leave no room for rounding.
     #[test]
     fn a_beam_enters_what_a_ray_of_it_enters() {
-        let mut random = Random(3);
+        let mut random = Random::new(3);
         let (mut beams, mut entered) = (0, 0);
         for i in 0..20_000 {
             let boxes: [Aabb; 8] = std::array::from_fn(|_| {
@@ -238,7 +207,7 @@ mod tests {
                 node.set(place, *bounds, Child::leaf(place as u32, 1));
             }
             let rays = aimed(&mut random, &boxes, i % 2 == 0);
-            let active = Mask8::first(1 + random.below(8));
+            let active = Mask8::first(1 + random.below(8) as usize);
             let Some(beam) = Beam::of_packet(&rays, active) else { continue };
             beams += 1;
             let t_far = f32x8::splat([f32::INFINITY, 1.0][i / 2 % 2]);

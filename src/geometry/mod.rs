@@ -18,7 +18,7 @@ mod placement;
 mod ray;
 pub mod ray_file;
 #[cfg(test)]
-mod seeds;
+pub(crate) mod seeds;
 mod sphere;
 mod triangle;
 

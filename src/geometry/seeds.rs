@@ -9,40 +9,40 @@ use super::{Aabb, Ray, RayLanes, Rayx8};
 use crate::simd::{Mask, Mask8, Real, Vector3, f32x8};
 
 /// A repeatable sequence.
-pub(super) struct Random(u64);
+pub(crate) struct Random(u64);
 
 impl Random {
-    pub(super) fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
     }
 
-    pub(super) fn bits(&mut self) -> u32 {
+    pub(crate) fn bits(&mut self) -> u32 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let x = (self.0 ^ self.0 >> 22) >> (22 + (self.0 >> 61));
         x as u32
     }
 
-    pub(super) fn below(&mut self, n: u32) -> u32 {
+    pub(crate) fn below(&mut self, n: u32) -> u32 {
         ((u64::from(self.bits()) * u64::from(n)) >> 32) as u32
     }
 
     /// In [−1, 1).
-    pub(super) fn signed(&mut self) -> f32 {
+    pub(crate) fn signed(&mut self) -> f32 {
         (self.bits() >> 8) as f32 * (2.0 / 16_777_216.0) - 1.0
     }
 
-    pub(super) fn vector(&mut self) -> Vec3 {
+    pub(crate) fn vector(&mut self) -> Vec3 {
         Vec3::new(self.signed(), self.signed(), self.signed())
     }
 
     /// Integers from −3 to 3, and −0: coincidences are the point.
-    pub(super) fn grid(&mut self) -> Vec3 {
+    pub(crate) fn grid(&mut self) -> Vec3 {
         let mut coordinate = || [-3.0, -2.0, -1.0, -0.0, 0.0, 1.0, 2.0, 3.0][self.below(8) as usize];
         Vec3::new(coordinate(), coordinate(), coordinate())
     }
 
     /// Grid points, but never the null vector.
-    pub(super) fn grid_direction(&mut self) -> Vec3 {
+    pub(crate) fn grid_direction(&mut self) -> Vec3 {
         loop {
             let d = self.grid();
             if d != Vec3::ZERO {
@@ -61,7 +61,7 @@ pub(super) trait Kernel: Copy + Debug {
     fn lanes(surfaces: &[Self; 8], rays: &Rayx8, active: Mask8) -> Option<(Mask8, [f32x8; 3])>;
 }
 
-pub(super) fn packet(rays: &[Ray; 8]) -> Rayx8 {
+pub(crate) fn packet(rays: &[Ray; 8]) -> Rayx8 {
     RayLanes {
         rdir: Vector3::from_fn(|i| rays[i].rdir),
         ..RayLanes::new(
