@@ -321,7 +321,7 @@ impl Leaves for Primitives {
         let (lanes, every) = (block.lanes(), Mask8::splat(true));
         let aspect = lanes.aspect(ray.org);
         let margin = aspect.margin(lanes.edges, ray.margin);
-        let Some((found, t, u, v)) = lanes.intersect_seen(&aspect, margin, &ray, every) else {
+        let Some((found, t, u, v)) = lanes.intersect_ahead(&aspect, margin, &ray, every) else {
             *hit = self.intersect_carefully::<ANY>(first, splat(), *hit);
             return;
         };

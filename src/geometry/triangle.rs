@@ -19,10 +19,14 @@
 //! whoever is beyond it, on either side, is certain. Only where a lane is not, the margins are worked out, and
 //! that out of the way ([`TriangleLanes::intersect`]).
 
+mod aspect;
+
 use glam::Vec3;
 
-use super::{Aabb, Ray, RayLanes, aabb, crossing::crossing};
-use crate::simd::{LANES, Mask, Real, Vector3, f32x8, vector3};
+pub use aspect::{Aspect, AspectColumns};
+
+use super::{Aabb, Ray, RayLanes, crossing::crossing};
+use crate::simd::{Mask, Real, Vector3, vector3};
 
 /// Bound on the rounding of a numerator, in units of all its products: with a = |s| + |e₁| + |e₂| and
 /// e = |e₁| + |e₂|, by components, the sum of aᵢ·|dir|ⱼ·eₖ over the permutations of the axes. A product takes
@@ -134,94 +138,6 @@ pub struct TriangleLanes<R> {
     pub edges: R,
 }
 
-/// Triangles as they are seen from where rays start: what of the test does not depend on a direction.
-#[derive(Clone, Copy, Debug)]
-pub struct Aspect<R> {
-    /// e₁.
-    pub e1: Vector3<R>,
-    /// e₂.
-    pub e2: Vector3<R>,
-    /// org − v₀.
-    pub s: Vector3<R>,
-    /// s × e₁.
-    pub q: Vector3<R>,
-    /// The lower corners of their boxes.
-    pub min: Vector3<R>,
-    /// The upper corners.
-    pub max: Vector3<R>,
-}
-
-/// An [`Aspect`] in columns, from which lanes are read where they are needed.
-#[derive(Clone, Copy, Debug)]
-pub struct AspectColumns([[[f32; LANES]; 3]; 6]);
-
-impl AspectColumns {
-    /// From lanes.
-    #[inline]
-    pub fn new(aspect: &Aspect<f32x8>) -> Self {
-        let Aspect { e1, e2, s, q, min, max } = *aspect;
-        Self([e1, e2, s, q, min, max].map(|v| [v.x.to_array(), v.y.to_array(), v.z.to_array()]))
-    }
-
-    /// One of the lanes, in all lanes.
-    #[inline(always)]
-    pub fn splat<R: Real>(&self, lane: usize) -> Aspect<R> {
-        let [e1, e2, s, q, min, max] = [0, 1, 2, 3, 4, 5].map(|of: usize| {
-            let [x, y, z] = &self.0[of];
-            vector3(R::splat(x[lane]), R::splat(y[lane]), R::splat(z[lane]))
-        });
-        Aspect { e1, e2, s, q, min, max }
-    }
-}
-
-/// What numerators say.
-struct Tested<R: Real> {
-    /// Not certainly a miss.
-    near: R::Mask,
-    /// Neither a hit nor a miss by rounding.
-    certain: R::Mask,
-    /// The least magnitude of a numerator: negative if not all have one sign.
-    inside: R,
-    t: R,
-    u: R,
-    v: R,
-}
-
-impl<R: Real> Aspect<R> {
-    /// A bound on the margins: a sum of products is at most the product of the sums. `edges` are the triangles',
-    /// `rounding` is the rays' [`margin`](RayLanes::margin).
-    #[inline(always)]
-    pub fn margin(&self, edges: R, rounding: R) -> R {
-        (self.s.abs().element_sum() + edges) * edges * rounding + R::splat(LEAST)
-    }
-
-    #[inline(always)]
-    fn test(&self, margin: R, ray: &RayLanes<R>, active: R::Mask) -> Tested<R> {
-        let Self { e1, e2, s, q, .. } = *self;
-        let p = ray.dir.cross(e2);
-        let det = e1.dot(p);
-        let u = s.dot(p);
-        let v = ray.dir.dot(q);
-        let w = det - u - v;
-        let inside = u.min(v).min(w).max(-u.max(v).max(w));
-        let near = (-margin).le(inside) & active;
-        let certain = margin.lt(inside);
-        let inverse = R::one() / det;
-        // A zero added: rays from +0 and from −0 see the same aspect, and have the same t.
-        let t = e2.dot(q) * inverse + R::zero();
-        Tested { near, certain, inside, t, u: u * inverse, v: v * inverse }
-    }
-
-    /// Hits that lie in the triangles' boxes and in the rays' ranges.
-    #[inline(always)]
-    fn within(&self, ray: &RayLanes<R>, (hit, t, u, v): (R::Mask, R, R, R)) -> (R::Mask, R, R, R) {
-        let all = (R::splat(f32::NEG_INFINITY), R::splat(f32::INFINITY));
-        let (low, high) = aabb::interval((self.min, self.max), (ray.org, ray.rdir), all);
-        let t = high.min(low.max(t));
-        (hit & low.le(high) & ray.t_near.lt(t) & t.le(ray.t_far), t, u, v)
-    }
-}
-
 impl<R: Real> TriangleLanes<R> {
     /// As seen from an origin.
     #[inline(always)]
@@ -255,14 +171,22 @@ impl<R: Real> TriangleLanes<R> {
         ray: &RayLanes<R>,
         active: R::Mask,
     ) -> Option<(R::Mask, R, R, R)> {
-        let tested = aspect.test(margin, ray, active);
-        if tested.near.none() {
-            return Some((tested.near, tested.t, tested.u, tested.v));
-        }
-        if (tested.near & !tested.certain).any() {
-            return None;
-        }
-        Some(aspect.within(ray, (tested.near, tested.t, tested.u, tested.v)))
+        aspect.answer(aspect.test(margin, ray, active), ray)
+    }
+
+    /// The same, for one ray and a block of triangles: rays that leave a surface cross the planes of those around them
+    /// just before they begin, and what is [behind](Aspect::behind) is not looked at further.
+    #[inline(always)]
+    pub fn intersect_ahead(
+        &self,
+        aspect: &Aspect<R>,
+        margin: R,
+        ray: &RayLanes<R>,
+        active: R::Mask,
+    ) -> Option<(R::Mask, R, R, R)> {
+        let mut tested = aspect.test(margin, ray, active);
+        tested.near = tested.near & !(tested.certain & aspect.behind(self.edges, ray));
+        aspect.answer(tested, ray)
     }
 
     /// Decides about lanes whose numerators are within the bound: by their margins, and within these by

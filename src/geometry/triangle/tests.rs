@@ -28,9 +28,9 @@ impl Kernel for Triangle {
         // Whoever answers at once has the same answer.
         let aspect = triangles.aspect(rays.org);
         let margin = aspect.margin(triangles.edges, rays.margin);
-        if let Some((seen, quick_t, quick_u, quick_v)) =
-            triangles.intersect_seen(&aspect, margin, rays, active)
-        {
+        let seen = triangles.intersect_seen(&aspect, margin, rays, active);
+        let ahead = triangles.intersect_ahead(&aspect, margin, rays, active);
+        for (seen, quick_t, quick_u, quick_v) in [seen, ahead].into_iter().flatten() {
             assert_eq!(seen.to_bitmask(), hit.to_bitmask(), "{surfaces:?} {rays:?}");
             for (quick, all) in [(quick_t, t), (quick_u, u), (quick_v, v)] {
                 let bits = |x: f32x8| f32x8::select(hit, x, f32x8::zero()).to_array().map(f32::to_bits);
@@ -247,4 +247,52 @@ fn the_bound_on_margins_is_one() {
         let margin = 6.0 * f64::from(f32::EPSILON) * d.dot(products);
         assert!(f64::from(bound) >= margin, "{bound} {margin} {triangle:?} {org} {dir}");
     }
+}
+
+/// A ray that begins next to a triangle, by a few roundings on either side, or on it.
+fn leaving(random: &mut Random) -> (Ray, Triangle) {
+    let scale = [1.0, 1e-3, 1e3][random.below(3) as usize];
+    let away = random.vector() * [0.0, 1.0, 300.0][random.below(3) as usize];
+    let [v0, v1, v2] = [random.vector(), random.vector(), random.vector()].map(|v| (v + away) * scale);
+    let triangle = Triangle::new(v0, v1, v2);
+    let (u, v) = (random.signed().abs(), random.signed().abs());
+    let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+    let on = v0 + triangle.e1() * u + triangle.e2() * v;
+    let off = random.signed() * [0.0, 1e-7, 1e-6, 1e-4, 1e-2][random.below(5) as usize];
+    let org = on + triangle.e1().cross(triangle.e2()).normalize_or_zero() * off * on.length();
+    let t_near = [0.0, 0.0, -1.0, f32::MIN_POSITIVE][random.below(4) as usize] * scale;
+    (Ray::new(org, random.vector(), t_near, f32::INFINITY), triangle)
+}
+
+#[test]
+fn rays_that_leave_a_triangle_find_what_they_find_alone() {
+    at_random(400_000, leaving);
+}
+
+/// What is called behind is behind in double precision; next to the surface nothing is said.
+#[test]
+fn what_is_behind_is_crossed_before_the_ray_begins() {
+    let (mut random, mut behind, mut not) = (Random::new(5), 0, 0);
+    for _ in 0..400_000 {
+        let (ray, triangle) = leaving(&mut random);
+        let [v0, v1, v2] = [triangle.v0, triangle.v1, triangle.v2].map(Into::into);
+        let lanes = TriangleLanes::<f32> { v0, v1, v2, edges: triangle.edges() };
+        let rays = RayLanes::<f32>::splat(&ray);
+        let aspect = lanes.aspect(rays.org);
+        let tested = aspect.test(aspect.margin(lanes.edges, rays.margin), &rays, true);
+        if !(tested.near && tested.certain) {
+            continue;
+        }
+        // By the vertices themselves: edges as they are rounded are another triangle's.
+        let [org, v0, v1, v2] = [ray.org, triangle.v0, triangle.v1, triangle.v2].map(Vec3::as_dvec3);
+        let normal = (v1 - v0).cross(v2 - v0);
+        let t = (v0 - org).dot(normal) / ray.dir.as_dvec3().dot(normal);
+        if aspect.behind(lanes.edges, &rays) {
+            assert!(t < 0.0 && ray.t_near >= 0.0, "{t} {ray:?} {triangle:?}");
+            behind += 1;
+        } else if t < 0.0 && ray.t_near >= 0.0 {
+            not += 1;
+        }
+    }
+    assert!(behind > 20_000 && not > 20_000, "{behind} {not}");
 }

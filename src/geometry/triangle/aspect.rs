@@ -1,0 +1,127 @@
+//! What of a test of triangles does not depend on a ray's direction, and the test itself.
+
+use super::LEAST;
+use crate::geometry::{RayLanes, aabb};
+use crate::simd::{Bits, LANES, Mask, Real, Vector3, f32x8, vector3};
+
+/// Bound on the rounding of e₂·q, in units of the product of all components' sums: eight roundings of each product,
+/// |e₁||e₂| ≤ (|e₁| + |e₂|)²/4, and a fifth more against the rounding of the bound itself.
+const DEPTH_ULPS: f32 = 1.2 * f32::EPSILON;
+
+/// Triangles as they are seen from where rays start: what of the test does not depend on a direction.
+#[derive(Clone, Copy, Debug)]
+pub struct Aspect<R> {
+    /// e₁.
+    pub e1: Vector3<R>,
+    /// e₂.
+    pub e2: Vector3<R>,
+    /// org − v₀.
+    pub s: Vector3<R>,
+    /// s × e₁.
+    pub q: Vector3<R>,
+    /// The lower corners of their boxes.
+    pub min: Vector3<R>,
+    /// The upper corners.
+    pub max: Vector3<R>,
+}
+
+/// An [`Aspect`] in columns, from which lanes are read where they are needed.
+#[derive(Clone, Copy, Debug)]
+pub struct AspectColumns([[[f32; LANES]; 3]; 6]);
+
+impl AspectColumns {
+    /// From lanes.
+    #[inline]
+    pub fn new(aspect: &Aspect<f32x8>) -> Self {
+        let Aspect { e1, e2, s, q, min, max } = *aspect;
+        Self([e1, e2, s, q, min, max].map(|v| [v.x.to_array(), v.y.to_array(), v.z.to_array()]))
+    }
+
+    /// One of the lanes, in all lanes.
+    #[inline(always)]
+    pub fn splat<R: Real>(&self, lane: usize) -> Aspect<R> {
+        let [e1, e2, s, q, min, max] = [0, 1, 2, 3, 4, 5].map(|of: usize| {
+            let [x, y, z] = &self.0[of];
+            vector3(R::splat(x[lane]), R::splat(y[lane]), R::splat(z[lane]))
+        });
+        Aspect { e1, e2, s, q, min, max }
+    }
+}
+
+/// What numerators say.
+pub(super) struct Tested<R: Real> {
+    /// Not certainly a miss.
+    pub(super) near: R::Mask,
+    /// Neither a hit nor a miss by rounding.
+    pub(super) certain: R::Mask,
+    /// The least magnitude of a numerator: negative if not all have one sign.
+    pub(super) inside: R,
+    pub(super) t: R,
+    pub(super) u: R,
+    pub(super) v: R,
+}
+
+impl<R: Real> Aspect<R> {
+    /// A bound on the margins: a sum of products is at most the product of the sums. `edges` are the triangles',
+    /// `rounding` is the rays' [`margin`](RayLanes::margin).
+    #[inline(always)]
+    pub fn margin(&self, edges: R, rounding: R) -> R {
+        self.size(edges) * rounding + R::splat(LEAST)
+    }
+
+    /// |s| + |e₁| + |e₂| by sums of components, times the edges'.
+    #[inline(always)]
+    fn size(&self, edges: R) -> R {
+        (self.s.abs().element_sum() + edges) * edges
+    }
+
+    /// Lanes whose plane is certainly crossed before the ray begins, if their numerators are certain.
+    ///
+    /// Then they are no hits: t < 0 lies in the slabs of the triangle's box, the differences and products that
+    /// make slabs keep their signs when they are rounded, and so t is not above 0 after the clamp.
+    #[inline(always)]
+    pub(super) fn behind(&self, edges: R, ray: &RayLanes<R>) -> R::Mask {
+        let Self { e1, e2, q, .. } = *self;
+        let det = e1.dot(ray.dir.cross(e2));
+        let sign = det.to_bits() & R::Bits::splat(1 << 31);
+        let depth = R::from_bits(e2.dot(q).to_bits() ^ sign);
+        let room = self.size(edges) * (edges * R::splat(DEPTH_ULPS)) + R::splat(LEAST);
+        depth.lt(-room) & R::zero().le(ray.t_near)
+    }
+
+    #[inline(always)]
+    pub(super) fn test(&self, margin: R, ray: &RayLanes<R>, active: R::Mask) -> Tested<R> {
+        let Self { e1, e2, s, q, .. } = *self;
+        let p = ray.dir.cross(e2);
+        let det = e1.dot(p);
+        let u = s.dot(p);
+        let v = ray.dir.dot(q);
+        let w = det - u - v;
+        let inside = u.min(v).min(w).max(-u.max(v).max(w));
+        let near = (-margin).le(inside) & active;
+        let certain = margin.lt(inside);
+        let inverse = R::one() / det;
+        // A zero added: rays from +0 and from −0 see the same aspect, and have the same t.
+        let t = e2.dot(q) * inverse + R::zero();
+        Tested { near, certain, inside, t, u: u * inverse, v: v * inverse }
+    }
+
+    /// What is to be said of lanes, if it is certain.
+    #[inline(always)]
+    pub(super) fn answer(&self, tested: Tested<R>, ray: &RayLanes<R>) -> Option<(R::Mask, R, R, R)> {
+        let Tested { near, certain, t, u, v, .. } = tested;
+        if near.none() {
+            return Some((near, t, u, v));
+        }
+        if (near & !certain).any() { None } else { Some(self.within(ray, (near, t, u, v))) }
+    }
+
+    /// Hits that lie in the triangles' boxes and in the rays' ranges.
+    #[inline(always)]
+    pub(super) fn within(&self, ray: &RayLanes<R>, (hit, t, u, v): (R::Mask, R, R, R)) -> (R::Mask, R, R, R) {
+        let all = (R::splat(f32::NEG_INFINITY), R::splat(f32::INFINITY));
+        let (low, high) = aabb::interval((self.min, self.max), (ray.org, ray.rdir), all);
+        let t = high.min(low.max(t));
+        (hit & low.le(high) & ray.t_near.lt(t) & t.le(ray.t_far), t, u, v)
+    }
+}
