@@ -37,6 +37,13 @@ pub trait Stream {
         }
     }
 
+    /// Eight rays, from a multiple of eight on, will be asked for soon, and their answers given: memory may begin to bring
+    /// both. There may be no such rays.
+    #[inline]
+    fn expect(&self, first: usize) {
+        let _ = first;
+    }
+
     /// Is there nothing to trace?
     fn is_empty(&self) -> bool {
         self.len() == 0
@@ -60,6 +67,40 @@ impl<T> Tracer<T> {
 
 /// Bundles in a tile: those of two runs.
 pub(super) const TILE: usize = 2 * BUNDLES;
+
+/// How many rays a stream expects before they are loaded: a tile, or two runs.
+pub(super) const AHEAD: usize = 2 * RUN;
+
+/// Asks memory for the next rays step by step, while those before are traced: all at once would be more than it can
+/// have on its way, and the processor would wait until the queue is shorter.
+pub(super) struct Ahead<'a, S> {
+    stream: &'a S,
+    next: usize,
+    end: usize,
+}
+
+impl<'a, S: Stream> Ahead<'a, S> {
+    /// While rays from `first` on are traced, `count` of them.
+    pub(super) fn new(stream: &'a S, first: usize, count: usize) -> Self {
+        Self { stream, next: first + AHEAD, end: first + AHEAD + count }
+    }
+
+    /// Eight more.
+    #[inline]
+    pub(super) fn step(&mut self) {
+        if self.next < self.end {
+            self.stream.expect(self.next);
+            self.next += LANES;
+        }
+    }
+
+    /// Whatever has not been asked for yet.
+    pub(super) fn finish(&mut self) {
+        while self.next < self.end {
+            self.step();
+        }
+    }
+}
 
 /// How to go through the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -130,7 +171,9 @@ impl Bvh {
         // Nothing is hit before −∞, where there is no ray.
         let limit = |i: usize| bundle(i).map_or(f32x16::splat(f32::NEG_INFINITY), |rays| rays.t_far);
         let mut hits = std::array::from_fn(|i| Hitx16::nothing(limit(i)));
-        let cost = self.intersect_tile::<ANY, L, T>(leaves, &rays, &mut hits, traversal)?;
+        let mut ahead = Ahead::new(stream, runs[0].first, RUN * runs.len());
+        let cost = self.intersect_tile::<ANY, L, S, T>(leaves, &rays, &mut hits, &mut ahead, traversal)?;
+        ahead.finish();
         for (run, hits) in runs.iter().zip(hits.chunks(BUNDLES)) {
             if ANY {
                 let bits =
@@ -160,7 +203,10 @@ impl Bvh {
         let start = entry.as_ref().or(self.nodes.first());
         let mut blocked = run.blocked;
         let mut hits = [Hitx16::nothing(f32x16::zero()); BUNDLES];
+        let mut ahead = Ahead::new(stream, run.first, RUN);
         for (i, hit) in hits.iter_mut().enumerate().take(run.bundles()) {
+            ahead.step();
+            ahead.step();
             let (ray, active) = run.bundle(i);
             hit.t = ray.t_far;
             if let Some(start) = start {

@@ -6,8 +6,11 @@
 //! a bundle would take eight times is so taken once.
 
 use super::{
-    Bvh, Child, Hitx16, Kind, Leaves, Node, Tally, Traversal, beam::Beam, bundle::BUNDLE, cost::Cost,
-    stream::TILE,
+    Bvh, Child, Hitx16, Kind, Leaves, Node, Stream, Tally, Traversal,
+    beam::Beam,
+    bundle::BUNDLE,
+    cost::Cost,
+    stream::{Ahead, TILE},
 };
 use crate::geometry::Rayx16;
 use crate::simd::{Mask, Real, f32x8};
@@ -18,11 +21,12 @@ const FEW: u32 = 4;
 impl Bvh {
     /// Traces a tile; `hits` as for [`Bvh::intersect_packet`]. Returns what it cost; `None`, and it has done
     /// nothing, if the rays do not point into one octant.
-    pub(super) fn intersect_tile<const ANY: bool, L: Leaves, T: Tally>(
+    pub(super) fn intersect_tile<const ANY: bool, L: Leaves, S: Stream, T: Tally>(
         &self,
         leaves: &L,
         rays: &[&Rayx16; TILE],
         hits: &mut [Hitx16; TILE],
+        ahead: &mut Ahead<S>,
         traversal: &mut Traversal<T>,
     ) -> Option<Cost> {
         let beams = Beam::of_bundles(rays)?;
@@ -40,6 +44,7 @@ impl Bvh {
         let mut top = 1;
         while top > 0 {
             top -= 1;
+            ahead.step();
             let ((child, enter), mask) = (stack[top], u32::from(masks[top]));
             if enter > end {
                 continue;

@@ -95,10 +95,18 @@ impl<A: Answer> Stream for Slices<'_, A> {
 
     #[inline(always)]
     fn packet(&self, first: usize) -> (Rayx8, Mask8) {
-        prefetch::<4>(self.rays.as_ptr().wrapping_add(first + AHEAD).cast());
         let rays = &self.rays[first..self.rays.len().min(first + LANES)];
         let packet = Ray32::packet(rays);
         (packet, Mask8::first(rays.len()) & packet.t_near.le(packet.t_far))
+    }
+
+    // In runs, rays and answers come one after the other by far less than a page: that is over before the processor
+    // sees it by itself.
+    #[inline]
+    fn expect(&self, first: usize) {
+        prefetch::<4>(self.rays.as_ptr().wrapping_add(first).cast());
+        let answers = self.out.as_ptr().wrapping_add(first).cast();
+        if size_of::<A>() * LANES > 64 { prefetch::<2>(answers) } else { prefetch::<1>(answers) }
     }
 
     #[inline]
@@ -118,16 +126,11 @@ impl<A: Answer> Stream for Slices<'_, A> {
 
     #[inline]
     fn answer_packet(&mut self, first: usize, [a, b, c, d, e, f, g, h]: [Hit; LANES]) {
-        prefetch::<2>(self.out.as_ptr().wrapping_add(first + AHEAD).cast());
         if let Some(out) = self.out[first..].first_chunk_mut() {
             *out = [A::of(&a), A::of(&b), A::of(&c), A::of(&d), A::of(&e), A::of(&f), A::of(&g), A::of(&h)];
         }
     }
 }
-
-/// Rays ahead of those that are loaded, which memory is asked for: a run of them, by far less than a page,
-/// is over before the processor sees that they come one after the other.
-const AHEAD: usize = 128;
 
 #[cfg(test)]
 mod tests {

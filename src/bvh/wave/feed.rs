@@ -5,6 +5,7 @@ use crate::bvh::{
     Bvh, Child, Leaves, Node, Stream, Tally, Way,
     cost::Cost,
     run::{PACKETS, RUN, Runs},
+    stream::Ahead,
 };
 use crate::geometry::{Hit, RayLanes, Rayx8};
 use crate::simd::{LANES, Real, Vec3x8, f32x8, transpose, u32x8, vector3};
@@ -185,6 +186,7 @@ impl Feed {
         self.kind = runs.kind();
         self.kinds |= self.kind;
         let run = runs.take();
+        Ahead::new(stream, run.first, RUN).finish();
         self.entry = if ANY { run.entry(bvh) } else { None };
         let nowhere = self.entry.as_ref().is_some_and(|node| node.children[0] == Child::ABSENT);
         if !nowhere && !bvh.nodes.is_empty() {
