@@ -154,9 +154,10 @@ impl<R: Real> TriangleLanes<R> {
         let aspect = self.aspect(ray.org);
         let tested = aspect.test(aspect.margin(self.edges, ray.margin), ray, active);
         let doubtful = tested.near & !tested.certain;
-        let found = (tested.near & tested.certain, tested.t, tested.u, tested.v);
+        let (t, u, v) = tested.quotients();
+        let found = (tested.near & tested.certain, t, u, v);
         let found = if doubtful.any() { self.look_again(ray, doubtful, tested.inside, found) } else { found };
-        aspect.within(ray, found)
+        aspect.within(ray, found.0, (found.1, found.2, found.3))
     }
 
     /// The same for rays whose origin the triangles have been seen from; `None`, and [`intersect`](Self::intersect)
@@ -185,7 +186,7 @@ impl<R: Real> TriangleLanes<R> {
         active: R::Mask,
     ) -> Option<(R::Mask, R, R, R)> {
         let mut tested = aspect.test(margin, ray, active);
-        tested.near = tested.near & !(tested.certain & aspect.behind(self.edges, ray));
+        tested.near = tested.near & !(tested.certain & aspect.behind(self.edges, &tested, ray));
         aspect.answer(tested, ray)
     }
 

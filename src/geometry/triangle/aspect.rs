@@ -48,7 +48,7 @@ impl AspectColumns {
     }
 }
 
-/// What numerators say.
+/// Numerators, and what they say.
 pub(super) struct Tested<R: Real> {
     /// Not certainly a miss.
     pub(super) near: R::Mask,
@@ -56,9 +56,21 @@ pub(super) struct Tested<R: Real> {
     pub(super) certain: R::Mask,
     /// The least magnitude of a numerator: negative if not all have one sign.
     pub(super) inside: R,
-    pub(super) t: R,
-    pub(super) u: R,
-    pub(super) v: R,
+    det: R,
+    /// That of t.
+    depth: R,
+    u: R,
+    v: R,
+}
+
+impl<R: Real> Tested<R> {
+    /// (t, u, v). A division, so not before they are wanted.
+    #[inline(always)]
+    pub(super) fn quotients(&self) -> (R, R, R) {
+        let inverse = R::one() / self.det;
+        // A zero added: rays from +0 and from −0 see the same aspect, and have the same t.
+        (self.depth * inverse + R::zero(), self.u * inverse, self.v * inverse)
+    }
 }
 
 impl<R: Real> Aspect<R> {
@@ -75,20 +87,6 @@ impl<R: Real> Aspect<R> {
         (self.s.abs().element_sum() + edges) * edges
     }
 
-    /// Lanes whose plane is certainly crossed before the ray begins, if their numerators are certain.
-    ///
-    /// Then they are no hits: t < 0 lies in the slabs of the triangle's box, the differences and products that
-    /// make slabs keep their signs when they are rounded, and so t is not above 0 after the clamp.
-    #[inline(always)]
-    pub(super) fn behind(&self, edges: R, ray: &RayLanes<R>) -> R::Mask {
-        let Self { e1, e2, q, .. } = *self;
-        let det = e1.dot(ray.dir.cross(e2));
-        let sign = det.to_bits() & R::Bits::splat(1 << 31);
-        let depth = R::from_bits(e2.dot(q).to_bits() ^ sign);
-        let room = self.size(edges) * (edges * R::splat(DEPTH_ULPS)) + R::splat(LEAST);
-        depth.lt(-room) & R::zero().le(ray.t_near)
-    }
-
     #[inline(always)]
     pub(super) fn test(&self, margin: R, ray: &RayLanes<R>, active: R::Mask) -> Tested<R> {
         let Self { e1, e2, s, q, .. } = *self;
@@ -99,26 +97,36 @@ impl<R: Real> Aspect<R> {
         let w = det - u - v;
         let inside = u.min(v).min(w).max(-u.max(v).max(w));
         let near = (-margin).le(inside) & active;
-        let certain = margin.lt(inside);
-        let inverse = R::one() / det;
-        // A zero added: rays from +0 and from −0 see the same aspect, and have the same t.
-        let t = e2.dot(q) * inverse + R::zero();
-        Tested { near, certain, inside, t, u: u * inverse, v: v * inverse }
+        Tested { near, certain: margin.lt(inside), inside, det, depth: e2.dot(q), u, v }
+    }
+
+    /// Lanes whose plane is certainly crossed before the ray begins, if their numerators are certain.
+    ///
+    /// Then they are no hits: t < 0 lies in the slabs of the triangle's box, the differences and products that
+    /// make slabs keep their signs when they are rounded, and so t is not above 0 after the clamp.
+    #[inline(always)]
+    pub(super) fn behind(&self, edges: R, tested: &Tested<R>, ray: &RayLanes<R>) -> R::Mask {
+        let sign = tested.det.to_bits() & R::Bits::splat(1 << 31);
+        let depth = R::from_bits(tested.depth.to_bits() ^ sign);
+        let room = self.size(edges) * (edges * R::splat(DEPTH_ULPS)) + R::splat(LEAST);
+        depth.lt(-room) & R::zero().le(ray.t_near)
     }
 
     /// What is to be said of lanes, if it is certain.
     #[inline(always)]
     pub(super) fn answer(&self, tested: Tested<R>, ray: &RayLanes<R>) -> Option<(R::Mask, R, R, R)> {
-        let Tested { near, certain, t, u, v, .. } = tested;
+        let Tested { near, certain, .. } = tested;
+        let nothing = R::zero();
         if near.none() {
-            return Some((near, t, u, v));
+            return Some((near, nothing, nothing, nothing));
         }
-        if (near & !certain).any() { None } else { Some(self.within(ray, (near, t, u, v))) }
+        let doubtful = (near & !certain).any();
+        (!doubtful).then(|| self.within(ray, near, tested.quotients()))
     }
 
     /// Hits that lie in the triangles' boxes and in the rays' ranges.
     #[inline(always)]
-    pub(super) fn within(&self, ray: &RayLanes<R>, (hit, t, u, v): (R::Mask, R, R, R)) -> (R::Mask, R, R, R) {
+    pub(super) fn within(&self, ray: &RayLanes<R>, hit: R::Mask, (t, u, v): (R, R, R)) -> (R::Mask, R, R, R) {
         let all = (R::splat(f32::NEG_INFINITY), R::splat(f32::INFINITY));
         let (low, high) = aabb::interval((self.min, self.max), (ray.org, ray.rdir), all);
         let t = high.min(low.max(t));

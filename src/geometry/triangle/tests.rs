@@ -287,7 +287,7 @@ fn what_is_behind_is_crossed_before_the_ray_begins() {
         let [org, v0, v1, v2] = [ray.org, triangle.v0, triangle.v1, triangle.v2].map(Vec3::as_dvec3);
         let normal = (v1 - v0).cross(v2 - v0);
         let t = (v0 - org).dot(normal) / ray.dir.as_dvec3().dot(normal);
-        if aspect.behind(lanes.edges, &rays) {
+        if aspect.behind(lanes.edges, &tested, &rays) {
             assert!(t < 0.0 && ray.t_near >= 0.0, "{t} {ray:?} {triangle:?}");
             behind += 1;
         } else if t < 0.0 && ray.t_near >= 0.0 {
