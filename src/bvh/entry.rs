@@ -70,7 +70,7 @@ impl Bvh {
             count -= 1;
             let (last, child) = (node.child_bounds(count), node.children[count]);
             node.set(place, last, child);
-            node.set(count, Aabb::EMPTY, Child::ABSENT);
+            node.clear(count);
             for other in (0..8).filter(|other| meets >> other & 1 != 0) {
                 node.set(count, below.child_bounds(other), below.children[other]);
                 count += 1;

@@ -7,7 +7,7 @@ use crate::simd::u32x8;
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct Node {
-    /// For each axis the lower bounds, then the upper ones. An absent child has an empty box.
+    /// For each axis the lower bounds, then the upper ones. No ray enters the box of an absent child.
     pub bounds: [[[f32; 8]; 2]; 3],
     /// What is behind each box.
     pub children: [Child; 8],
@@ -109,9 +109,25 @@ impl Child {
 }
 
 impl Node {
+    /// Where an absent child is: nowhere for those who look for the near plane of an axis by the sign of the ray, and,
+    /// because of NaN along the last axis, for those who take the lesser of two planes.
+    const NOWHERE: [[f32; 2]; 3] =
+        [[f32::INFINITY, f32::NEG_INFINITY], [f32::INFINITY, f32::NEG_INFINITY], [f32::NAN, f32::NAN]];
+
     /// No children.
-    pub const EMPTY: Self =
-        Self { bounds: [[[f32::INFINITY; 8], [f32::NEG_INFINITY; 8]]; 3], children: [Child::ABSENT; 8] };
+    pub const EMPTY: Self = {
+        let [[x0, x1], [y0, y1], [z0, z1]] = Self::NOWHERE;
+        let bounds = [[[x0; 8], [x1; 8]], [[y0; 8], [y1; 8]], [[z0; 8], [z1; 8]]];
+        Self { bounds, children: [Child::ABSENT; 8] }
+    };
+
+    /// Takes the child out of its place.
+    pub fn clear(&mut self, place: usize) {
+        for (bounds, nowhere) in self.bounds.iter_mut().zip(Self::NOWHERE) {
+            (bounds[0][place], bounds[1][place]) = (nowhere[0], nowhere[1]);
+        }
+        self.children[place] = Child::ABSENT;
+    }
 
     /// Puts a child in its place.
     pub fn set(&mut self, place: usize, bounds: Aabb, child: Child) {
@@ -122,7 +138,13 @@ impl Node {
         self.children[place] = child;
     }
 
-    /// The box of a child.
+    /// The box around all children.
+    pub fn bounds(&self) -> Aabb {
+        let there = (0..8).filter(|&place| self.children[place] != Child::ABSENT);
+        there.fold(Aabb::EMPTY, |bounds, place| bounds.union(self.child_bounds(place)))
+    }
+
+    /// The box of a child that is there.
     #[inline]
     pub fn child_bounds(&self, place: usize) -> Aabb {
         let corner = |side: usize| glam::Vec3::from_array(self.bounds.map(|axis| axis[side][place]));

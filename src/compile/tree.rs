@@ -1,7 +1,7 @@
 //! The tree in numbers, for people.
 
 use super::Scene;
-use crate::{bvh::Kind, geometry::Aabb};
+use crate::bvh::Kind;
 
 /// The upper tree: groups that instances place have trees of their own.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,10 +29,7 @@ impl Scene {
             shape.node_cost += cost;
             shape.depth = shape.depth.max(depth);
             let there = (0..8).filter(|&place| node.children[place].kind() != Kind::Absent);
-            let area = *root_area.get_or_insert_with(|| {
-                let bounds = there.clone().map(|place| node.child_bounds(place));
-                f64::from(bounds.reduce(Aabb::union).map_or(0.0, Aabb::half_area))
-            });
+            let area = *root_area.get_or_insert_with(|| f64::from(node.bounds().half_area()));
             for place in there {
                 let share = f64::from(node.child_bounds(place).half_area()) / area.max(f64::MIN_POSITIVE);
                 match node.children[place].kind() {

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use super::camera_rays;
 use super::integrator::Path;
 use crate::compile::{Asked, Scene};
-use crate::geometry::{Aabb, Hit, PrimitiveId, REACH, Ray32, offset_origin};
+use crate::geometry::{Hit, PrimitiveId, REACH, Ray32, offset_origin};
 use crate::light::{Light, Reach, Receiver};
 use crate::math::{Frame, Sampler, warp};
 use crate::simd::Vector3;
@@ -160,6 +160,6 @@ fn diagonal(scene: &Scene) -> f32 {
     let Some(root) = scene.bvh.nodes().first() else {
         return 0.0;
     };
-    let bounds = (0..8).fold(Aabb::EMPTY, |bounds, place| bounds.union(root.child_bounds(place)));
+    let bounds = root.bounds();
     (bounds.max - bounds.min).length()
 }

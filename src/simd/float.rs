@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{Mask8, Real, u32x8};
+use super::{Mask8, Real, mask::Set8, u32x8};
 
 /// Eight `f32`, one a lane. Equality of bits with eight scalars is the contract.
 #[allow(non_camel_case_types)]
@@ -126,19 +126,19 @@ impl Real for f32x8 {
     }
     #[inline]
     fn lt(self, rhs: Self) -> Mask8 {
-        Mask8(self.0.simd_lt(rhs.0))
+        Mask8(Set8::lt(self.0, rhs.0))
     }
     #[inline]
     fn le(self, rhs: Self) -> Mask8 {
-        Mask8(self.0.simd_le(rhs.0))
+        Mask8(Set8::le(self.0, rhs.0))
     }
     #[inline]
     fn equal(self, rhs: Self) -> Mask8 {
-        Mask8(self.0.simd_eq(rhs.0))
+        Mask8(Set8::equal(self.0, rhs.0))
     }
     #[inline]
     fn select(mask: Mask8, a: Self, b: Self) -> Self {
-        Self(mask.0.select(a.0, b.0))
+        Self(mask.0.choose(a.0, b.0))
     }
     // x86's own minimum and maximum are the comparison and the selection in one instruction; others'
     // are not, NaN and −0 apart.

@@ -2,7 +2,7 @@
 
 use std::ops::{BitAnd, BitOr, BitXor, Not, Shl, Shr};
 
-use super::{Bits, Mask8};
+use super::{Bits, Mask8, mask::Set8};
 
 /// Eight `u32`, one a lane, wrapping.
 #[allow(non_camel_case_types)]
@@ -114,16 +114,10 @@ impl Bits for u32x8 {
     }
     #[inline]
     fn equal(self, rhs: Self) -> Mask8 {
-        Mask8(f32_lanes(self.0.simd_eq(rhs.0)))
+        Mask8(Set8::equal_bits(self.0, rhs.0))
     }
     #[inline]
     fn select(mask: Mask8, a: Self, b: Self) -> Self {
-        let mask = wide::u32x8::new(mask.0.to_array().map(f32::to_bits));
-        Self(mask.bitselect(a.0, b.0))
+        Self(mask.0.choose_bits(a.0, b.0))
     }
-}
-
-#[inline]
-fn f32_lanes(bits: wide::u32x8) -> wide::f32x8 {
-    wide::f32x8::new(bits.to_array().map(f32::from_bits))
 }

@@ -21,13 +21,13 @@ mod sort;
 mod tests;
 mod vector;
 
-pub use compress::{compress, le_bits, le_bits_unless};
+pub use compress::compress;
 pub use float::{f32x8, transpose};
 pub use integer::u32x8;
-pub use mask::Mask8;
+pub use mask::{Mask8, Mask16};
 pub use prefetch::prefetch;
 pub use real::{Bits, Mask, Real};
-pub use sixteen::{Mask16, ONE_REGISTER, f32x16, u32x16};
+pub use sixteen::{ONE_REGISTER, f32x16, u32x16};
 pub use sort::sort_descending;
 pub use vector::{Vec3x8, Vec3x16, Vector3, vector3};
 

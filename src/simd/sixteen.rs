@@ -2,7 +2,7 @@
 
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Shl, Shr, Sub};
 
-use super::{Bits, Mask, Mask8, Real, f32x8, transpose, u32x8};
+use super::{Bits, Mask16, Real, f32x8, mask::Set16, transpose, u32x8};
 
 /// Sixteen `f32`, one a lane. Equality of bits with sixteen scalars is the contract.
 #[allow(non_camel_case_types)]
@@ -15,10 +15,6 @@ pub struct f32x16(wide::f32x16);
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(transparent)]
 pub struct u32x16(wide::u32x16);
-
-/// Sixteen lanes, each all ones or all zeros.
-#[derive(Clone, Copy, Debug)]
-pub struct Mask16(wide::f32x16);
 
 /// Does one register hold sixteen lanes? Where it takes two, a kernel that keeps many numbers has too few of them,
 /// and had better see the halves one after the other.
@@ -115,36 +111,6 @@ impl u32x16 {
     }
 }
 
-impl Mask16 {
-    /// Lanes 8i to 8i + 7.
-    #[inline]
-    pub fn half(self, i: usize) -> Mask8 {
-        Mask8::from_bitmask(self.to_bitmask() >> (i * 8) & 0xff)
-    }
-}
-
-impl Mask for Mask16 {
-    #[inline]
-    fn splat(value: bool) -> Self {
-        Self(wide::f32x16::splat(f32::from_bits(if value { u32::MAX } else { 0 })))
-    }
-    #[inline]
-    fn to_bitmask(self) -> u32 {
-        self.0.to_bitmask()
-    }
-    #[inline]
-    fn from_bitmask(bits: u32) -> Self {
-        const BIT: u32x16 = u32x16(wide::u32x16::new([
-            1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768,
-        ]));
-        (u32x16::splat(bits) & BIT).equal(BIT)
-    }
-    #[inline]
-    fn any(self) -> bool {
-        self.0.any()
-    }
-}
-
 macro_rules! lane_by_lane {
     ($name:ident: $($trait:ident $verb:ident $op:tt),*) => {$(
         impl $trait for $name {
@@ -158,7 +124,6 @@ macro_rules! lane_by_lane {
 }
 lane_by_lane!(f32x16: Add add +, Sub sub -, Mul mul *, Div div /);
 lane_by_lane!(u32x16: BitAnd bitand &, BitOr bitor |, BitXor bitxor ^);
-lane_by_lane!(Mask16: BitAnd bitand &, BitOr bitor |);
 
 impl Neg for f32x16 {
     type Output = Self;
@@ -169,14 +134,6 @@ impl Neg for f32x16 {
 }
 
 impl Not for u32x16 {
-    type Output = Self;
-    #[inline]
-    fn not(self) -> Self {
-        Self(!self.0)
-    }
-}
-
-impl Not for Mask16 {
     type Output = Self;
     #[inline]
     fn not(self) -> Self {
@@ -229,12 +186,11 @@ impl Bits for u32x16 {
     }
     #[inline]
     fn equal(self, rhs: Self) -> Mask16 {
-        Mask16(wide::f32x16::new(self.0.simd_eq(rhs.0).to_array().map(f32::from_bits)))
+        Mask16(Set16::equal_bits(self.0, rhs.0))
     }
     #[inline]
     fn select(mask: Mask16, a: Self, b: Self) -> Self {
-        let mask = wide::u32x16::new(mask.0.to_array().map(f32::to_bits));
-        Self(mask.bitselect(a.0, b.0))
+        Self(mask.0.choose_bits(a.0, b.0))
     }
 }
 
@@ -271,19 +227,19 @@ impl Real for f32x16 {
     }
     #[inline]
     fn lt(self, rhs: Self) -> Mask16 {
-        Mask16(self.0.simd_lt(rhs.0))
+        Mask16(Set16::lt(self.0, rhs.0))
     }
     #[inline]
     fn le(self, rhs: Self) -> Mask16 {
-        Mask16(self.0.simd_le(rhs.0))
+        Mask16(Set16::le(self.0, rhs.0))
     }
     #[inline]
     fn equal(self, rhs: Self) -> Mask16 {
-        Mask16(self.0.simd_eq(rhs.0))
+        Mask16(Set16::equal(self.0, rhs.0))
     }
     #[inline]
     fn select(mask: Mask16, a: Self, b: Self) -> Self {
-        Self(mask.0.select(a.0, b.0))
+        Self(mask.0.choose(a.0, b.0))
     }
     // As for eight lanes.
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]

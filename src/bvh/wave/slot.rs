@@ -3,7 +3,7 @@
 use super::feed::Ready;
 use crate::bvh::{Child, Leaves, Node, STACK};
 use crate::geometry::{Hit, PrimitiveId};
-use crate::simd::{Bits, Real, compress, f32x8, le_bits, le_bits_unless, sort_descending, u32x8};
+use crate::simd::{Bits, Mask, Real, compress, f32x8, sort_descending, u32x8};
 
 /// The ray, what it has found, and what waits for it.
 #[repr(C, align(64))]
@@ -69,10 +69,11 @@ impl Slot {
             let [one, other] = node.bounds[axis].map(f32x8::from);
             let one = one.fused(inv, f32x8::splat(slab.low_shift));
             let other = other.fused(inv, f32x8::splat(slab.high_shift));
-            low = one.min(other).max(low);
-            high = one.max(other).min(high);
+            // In this order: NaN, where there is no child, has to stay.
+            low = low.max(one.min(other));
+            high = high.min(one.max(other));
         }
-        let enters = le_bits_unless(low, high, node.words(), Child::ABSENT.word());
+        let enters = low.le(high).to_bitmask() as u8;
         let count = enters.count_ones();
         let top = self.top as usize;
         let children = if ANY {
@@ -108,7 +109,7 @@ impl Slot {
             loop {
                 let keys = <[u32; 8]>::try_from(&self.keys[top..top + 8]).unwrap_or_default();
                 let distances = f32x8::from_bits(u32x8::new(keys) & u32x8::splat(!PLACE));
-                let near = u32::from(le_bits(distances, f32x8::splat(self.hit.t)));
+                let near = distances.le(f32x8::splat(self.hit.t)).to_bitmask();
                 if near != 0 {
                     top = top + (31 - near.leading_zeros()) as usize - 8;
                     break;
