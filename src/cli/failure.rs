@@ -8,7 +8,7 @@ use std::{
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 use terminal_size::{Width, terminal_size_of};
 
-use super::{console::folded, exit, quantity::counted};
+use super::{console::folded, excerpt::Excerpt, exit, quantity::counted};
 use crate::{
     compile::CompileError,
     load::{LoadError, Warning},
@@ -20,8 +20,6 @@ const MAX_WIDTH: usize = 100;
 const MIN_WIDTH: usize = 20;
 /// Away from a terminal a sentence is one line, to be searched for.
 const ENDLESS: usize = 1 << 20;
-/// Where a sentence goes on that is longer than a line.
-const INDENT: usize = 2;
 /// More than this of them are not read.
 const MAX_WARNINGS: usize = 20;
 
@@ -115,7 +113,7 @@ fn headed(word: &str, colour: u8) -> String {
 }
 
 fn tell_sentence(text: &str) {
-    tell(&folded(text, INDENT, width()));
+    tell(&folded(text, width()));
 }
 
 fn tell(text: &str) {
@@ -165,6 +163,8 @@ fn report(told: &dyn Diagnostic, theme: GraphicalTheme, width: usize) -> String 
 
 #[cfg(test)]
 mod tests {
+    let excerpt = Excerpt::of(told, width);
+    let told = excerpt.as_ref().map_or(told, |excerpt| excerpt as &dyn Diagnostic);
     use std::path::Path;
 
     use super::*;

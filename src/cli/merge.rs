@@ -21,7 +21,7 @@ use crate::{
 const EXAMPLES: &str = "\
 Examples:
   packlight merge part-*.exr -o whole.exr
-  packlight merge part-*.exr -o preview.png --partial --tonemap agx";
+  packlight merge part-*.exr -o preview.png --partial";
 
 /// Arguments of `merge`.
 #[derive(Clone, Debug, Args)]

@@ -52,14 +52,18 @@ const REPORT: &str = "Report";
 
 const EXAMPLES: &str = "\
 Examples:
-  packlight render cornell.xml -o cornell.exr --aov albedo,normal,depth
-  packlight render cornell.xml -o quick.png --time-limit 10s --tonemap agx
-  packlight render cornell.xml -o clean.exr --spp 4096 --target-error 0.01
-  packlight render cornell.xml -o small.png --width 400 --spp 64 --denoise
-  packlight render cornell.xml -o detail.exr --crop 200,312,96,180
-  packlight render cornell.xml -o live.exr --display-server localhost:14158
-  packlight render cornell.xml -o long.exr --checkpoint k.exr --resume k.exr
-  packlight render cornell.xml -o part-3.exr --shard 3/16";
+  packlight render room.xml -o room.exr --aov albedo,normal
+  packlight render room.xml -o quick.png --time-limit 10s
+  packlight render room.xml -o clean.exr \\
+      --spp 4096 --target-error 0.01
+  packlight render room.xml -o small.png \\
+      --width 400 --spp 64 --denoise --tonemap agx
+  packlight render room.xml -o a.exr --crop 200,312,96,180
+  packlight render room.xml -o live.exr \\
+      --display-server localhost:14158
+  packlight render room.xml -o long.exr \\
+      --checkpoint kept.exr --resume kept.exr
+  packlight render room.xml -o part-3.exr --shard 3/16";
 
 /// Arguments of `render`.
 #[derive(Clone, Debug, Args)]

@@ -12,7 +12,8 @@ const SHELLS: &str = "\
 Examples:
   source <(packlight completions bash)
   packlight completions zsh > ~/.zfunc/_packlight
-  packlight completions fish > ~/.config/fish/completions/packlight.fish";
+  packlight completions fish \\
+      > ~/.config/fish/completions/packlight.fish";
 
 const PAGES: &str = "\
 Examples:
@@ -40,7 +41,7 @@ pub(super) struct Manual {
 pub(super) fn complete(arguments: &Completions) -> Result<(), Failure> {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut Cli::command(), "packlight", &mut script);
-    console::print(&String::from_utf8_lossy(&script))
+    console::print_as_it_is(&String::from_utf8_lossy(&script))
 }
 
 /// Writes pages for `man`.

@@ -18,7 +18,7 @@ use crate::{
     render::{Frame, Plan, part::Part},
 };
 
-const KEEP: &str = "Checkpoints (what is continued ends in the same bits as what was never stopped)";
+const KEEP: &str = "Checkpoints (to go on from one ends in the same bits)";
 
 /// The options.
 #[derive(Clone, Debug, Args)]
