@@ -6,10 +6,10 @@ mod sheet;
 
 use std::path::PathBuf;
 
-use clap::{Args, CommandFactory, Subcommand, ValueHint, error::ErrorKind, value_parser};
+use clap::{Args, Subcommand, ValueHint, error::ErrorKind, value_parser};
 
 use super::{
-    Cli, console,
+    console,
     failure::{Failure, warn},
     output::check_writable,
     source::definition,
@@ -106,7 +106,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     if arguments.output.is_none() && arguments.csv.is_none() && !arguments.check {
         let message = "nothing is asked for: name a plot by -o or a table by --csv, or --check the model";
-        return Err(Cli::command().error(ErrorKind::MissingRequiredArgument, message).into());
+        return Err(Failure::usage("brdf", ErrorKind::MissingRequiredArgument, message));
     }
     for path in
         [arguments.output.as_ref().map(|plot| &plot.path), arguments.csv.as_ref()].into_iter().flatten()

@@ -1,6 +1,9 @@
 //! `packlight completions SHELL` and `packlight man FOLDER`: what the command line says of itself.
 
-use std::path::{Path, PathBuf};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 use clap::{Args, Command, CommandFactory};
 use clap_complete::Shell;
@@ -32,7 +35,7 @@ pub(super) struct Completions {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = PAGES)]
 pub(super) struct Manual {
-    /// Folder for one page a command: packlight.1, packlight-render.1 …
+    /// Folder for one page a command: packlight.1, packlight-render.1 …; made if it is not there
     #[arg(value_name = "FOLDER")]
     folder: PathBuf,
 }
@@ -49,6 +52,9 @@ pub(super) fn manual(arguments: &Manual) -> Result<(), Failure> {
     // `packlight help` has nothing to say that a page does not, and lanes are those of one machine.
     let mut program = Cli::command().disable_help_subcommand(true).version(env!("CARGO_PKG_VERSION"));
     program.build();
+    let folder = &arguments.folder;
+    fs::create_dir_all(folder)
+        .map_err(|error| Failure::Sentence(format!("{}: {error}", folder.display())))?;
     write_pages(&arguments.folder, &program, "packlight")
 }
 
