@@ -213,7 +213,7 @@ fn a_checkpoint_of_another_render_is_refused_with_the_difference() {
     fs::write(&other, text.replacen("</scene>", "<shape type=\"sphere\"/></scene>", 1)).expect("writable");
     let arguments = [&["render", &other, "-o", &out, "--resume", &kept], &PICTURE[..]].concat();
     fails(&arguments, 1, "is of another render: the scene is ");
-    fails(&render(&out, &["--resume", "no-such-file"]), 1, "no-such-file");
+    fails(&render(&out, &["--resume", "no-such-file"]), 1, "no-such-file: there is no such file");
     let mut damaged = bytes(&kept);
     let at = damaged.len() - 500;
     damaged[at] ^= 1;
@@ -245,6 +245,13 @@ fn a_finished_render_goes_on_to_more_samples() {
         "{text}"
     );
     assert_eq!(goes_on("--quiet"), "");
+    let all = packlight(&["render", SCENE, "-o", &out, "--width", "40", "--spp", "21", "--resume", &kept]);
+    let text = stdout(&all);
+    assert!(
+        text.starts_with(&format!("{kept} has 21 samples a pixel; nothing is left to render\n")),
+        "{text}"
+    );
+    assert!(!text.contains("profile"), "{text}");
     assert!(goes_on("--json").starts_with('{'));
 }
 
@@ -306,6 +313,11 @@ fn a_signal_writes_what_is_there_and_says_how_much() {
             assert_eq!(output.status.code(), Some(4), "{}", stderr(&output));
             let told = stderr(&output);
             assert!(told.contains("stopped: ") && told.contains(" of 1,000,000 samples a pixel"), "{told}");
+            let way_on = match keeps.is_empty() {
+                true => "; what is to be continued needs an .exr, or a --checkpoint\n".into(),
+                false => format!("; --resume {out} continues it\n"),
+            };
+            assert!(told.ends_with(&way_on), "{told}");
             assert!(Path::new(target).exists());
         }
         // What was stopped is a part: it can be continued, and to the same bits as the checkpoint.
@@ -339,7 +351,7 @@ fn a_time_limit_is_kept_and_what_is_there_goes_on() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
     let (least, most) = (json["samples_least"].as_u64(), json["samples_most"].as_u64());
-    assert!(most > Some(0) && most < Some(1_000_000), "{json}");
+    assert!(most > Some(0) && most < Some(1_000_000) && json["complete"] == false, "{json}");
     assert!(least.unwrap_or(0) * 2 >= most.unwrap_or(9) - 1, "{json}");
 }
 

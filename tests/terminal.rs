@@ -16,9 +16,17 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_packlight");
 /// Columns of the terminal.
 const COLUMNS: usize = 80;
 
+/// And of one that shares a screen.
+const NARROW: usize = 60;
+
 /// What somebody sees who types the words at a terminal, or `None` if there is no `script`.
 fn on_a_terminal(words: &str, no_color: &str) -> Option<String> {
-    let line = format!("stty rows 50 cols {COLUMNS}; {PROGRAM} {words}");
+    on_columns(COLUMNS, words, no_color)
+}
+
+/// The same, of so many columns.
+fn on_columns(columns: usize, words: &str, no_color: &str) -> Option<String> {
+    let line = format!("stty rows 50 cols {columns}; {PROGRAM} {words}");
     let mut command = Command::new("script");
     command.args(["-qec", &line, "/dev/null"]).current_dir(env!("CARGO_MANIFEST_DIR"));
     let Ok(output) = command.env("NO_COLOR", no_color).output() else {
@@ -70,6 +78,54 @@ fn nothing_is_wider_than_the_terminal() {
     // In a pipe a line stays a line.
     let told = stdout(&packlight(&["info", "scenes/materials.xml"]));
     assert!(told.lines().any(|line| line.contains("materials") && line.contains("ward")), "{told}");
+}
+
+#[test]
+fn what_is_told_on_a_narrow_terminal_is_broken_between_words() {
+    let folder = folder("terminal/narrow");
+    let out = path(&folder, "a.exr");
+    let render = format!("render scenes/cornell.xml -o {out} --width 32 --spp 1 --stats");
+    for words in [
+        &render,
+        "info scenes/materials.xml",
+        "bench scenes/cornell.xml --repeat 1",
+        "verify scenes/cornell.xml --most 512",
+        "brdf diffuse --check",
+        "meter scenes/cornell.xml --at 0,0,0 --normal 0,1,0",
+    ] {
+        let Some(told) = on_columns(NARROW, words, "1") else { return };
+        // What stands before was taken off the screen again; and but for the names of files.
+        let seen = told.lines().map(|line| line.rsplit("\x1b[2K").next().unwrap_or_default());
+        let wide: Vec<&str> =
+            seen.filter(|line| line.chars().count() > NARROW && !line.contains(&out)).collect();
+        assert!(wide.is_empty() && told.lines().count() > 4, "{words}: {wide:#?}\n{told}");
+    }
+    let words = "verify scenes/cornell.xml --most 512";
+    let piped = stdout(&packlight(&words.split(' ').collect::<Vec<_>>()));
+    let told = on_columns(NARROW / 2, words, "1").expect("it was there");
+    assert!(told.lines().count() > piped.lines().count(), "{told}");
+    assert_eq!(told.split_whitespace().collect::<Vec<_>>(), piped.split_whitespace().collect::<Vec<_>>());
+}
+
+#[test]
+fn a_long_line_of_a_file_is_shown_where_it_is_meant() {
+    let scene = path(&folder("terminal/long"), "a.xml");
+    let line =
+        "<bsdf type=\"diffuse\" id=\"white\"><rgb name=\"reflectence\" value=\"0.73, 0.71, 0.68\"/></bsdf>";
+    fs::write(
+        &scene,
+        format!("<scene version=\"3.0.0\"><sensor type=\"perspective\"/>\n    {line}\n</scene>\n"),
+    )
+    .expect("writable");
+    let Some(told) = on_columns(NARROW, &format!("info {scene}"), "1") else { return };
+    let shown: Vec<&str> = told.lines().filter(|line| !line.contains("a.xml")).collect();
+    assert!(shown.iter().all(|line| line.chars().count() <= NARROW), "{told}");
+    let at = shown.iter().position(|line| line.contains("reflectence\"")).expect("it is shown");
+    let column = |line: &str, part: &str| line.find(part).map(|byte| line[..byte].chars().count());
+    assert_eq!(column(shown[at], "reflectence"), column(shown[at + 1], "─────┬─────"), "{told}");
+    assert!(told.contains("a.xml:2:48]") && shown[at].contains('…'), "{told}");
+    // In a pipe a line is whole.
+    assert!(stderr(&packlight(&["info", &scene])).contains(line));
 }
 
 #[test]

@@ -6,10 +6,10 @@ mod sheet;
 
 use std::path::PathBuf;
 
-use clap::{Args, CommandFactory, Subcommand, ValueHint, error::ErrorKind, value_parser};
+use clap::{Args, Subcommand, ValueHint, error::ErrorKind, value_parser};
 
 use super::{
-    Cli, console,
+    console,
     failure::{Failure, warn},
     output::check_writable,
     source::definition,
@@ -27,15 +27,18 @@ const WHICH: &str = "Which material";
 const WHAT: &str = "What is made of it";
 
 const AFTER_HELP: &str = "\
-MODEL is a bsdf of the scene format on one line, plugin:name=value,name=value.
-A colour is three numbers with blanks between them; file names are relative to
-the working directory.
+MODEL is a bsdf of the scene format on one line,
+plugin:name=value,name=value. A colour is three numbers with
+blanks between them; file names are relative to the working
+directory.
 
 Examples:
-  packlight brdf \"roughconductor:alpha=0.3,material=Au\" -o lobe.svg
-  packlight brdf \"phong:diffuse_reflectance=0.3 0.1 0.1\" -o phong.png --light 60
-  packlight brdf ward:alpha_u=0.1,alpha_v=0.4 --check --csv ward.csv
-  packlight brdf --scene scenes/spheres.xml --material brushed-metal -o b.svg
+  packlight brdf roughconductor:material=Au -o gold.svg
+  packlight brdf \"phong:diffuse_reflectance=0.3 0.1 0.1\" \\
+      -o phong.png --light 60
+  packlight brdf ward:alpha_u=0.1,alpha_v=0.4 --check
+  packlight brdf --scene scenes/spheres.xml \\
+      --material brushed-metal -o b.svg --csv b.csv
   packlight brdf sheet -o sheet.png";
 
 /// Arguments of `brdf`.
@@ -103,7 +106,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     if arguments.output.is_none() && arguments.csv.is_none() && !arguments.check {
         let message = "nothing is asked for: name a plot by -o or a table by --csv, or --check the model";
-        return Err(Cli::command().error(ErrorKind::MissingRequiredArgument, message).into());
+        return Err(Failure::usage("brdf", ErrorKind::MissingRequiredArgument, message));
     }
     for path in
         [arguments.output.as_ref().map(|plot| &plot.path), arguments.csv.as_ref()].into_iter().flatten()

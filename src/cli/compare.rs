@@ -19,7 +19,7 @@ use crate::{
 const EXAMPLES: &str = "\
 Examples:
   packlight compare reference.exr test.exr -o difference.png
-  packlight compare reference.exr test.exr --max-flip 0.05 --json";
+  packlight compare a.exr b.exr --max-flip 0.05 --json";
 
 /// Arguments of `compare`.
 #[derive(Clone, Debug, Args)]

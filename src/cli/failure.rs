@@ -5,10 +5,11 @@ use std::{
     io::{IsTerminal, Write, stderr},
 };
 
+use clap::{CommandFactory, error::ErrorKind};
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 use terminal_size::{Width, terminal_size_of};
 
-use super::{console::folded, exit, quantity::counted};
+use super::{Cli, console::folded, excerpt::Excerpt, exit, quantity::counted};
 use crate::{
     compile::CompileError,
     load::{LoadError, Warning},
@@ -20,8 +21,6 @@ const MAX_WIDTH: usize = 100;
 const MIN_WIDTH: usize = 20;
 /// Away from a terminal a sentence is one line, to be searched for.
 const ENDLESS: usize = 1 << 20;
-/// Where a sentence goes on that is longer than a line.
-const INDENT: usize = 2;
 /// More than this of them are not read.
 const MAX_WARNINGS: usize = 20;
 
@@ -39,6 +38,14 @@ pub(super) enum Failure {
 }
 
 impl Failure {
+    /// What can't be done by `command`, or not with these options: told with how it is used.
+    pub(super) fn usage(command: &str, kind: ErrorKind, message: impl Display) -> Self {
+        let mut program = Cli::command();
+        program.build();
+        let command = program.find_subcommand(command).unwrap_or(&program);
+        Self::Usage(command.clone().error(kind, message))
+    }
+
     /// The exit code.
     pub(super) fn code(&self) -> u8 {
         match self {
@@ -115,7 +122,7 @@ fn headed(word: &str, colour: u8) -> String {
 }
 
 fn tell_sentence(text: &str) {
-    tell(&folded(text, INDENT, width()));
+    tell(&folded(text, width()));
 }
 
 fn tell(text: &str) {
@@ -156,6 +163,8 @@ fn report(told: &dyn Diagnostic, theme: GraphicalTheme, width: usize) -> String 
         .with_break_words(false)
         .with_links(false)
         .without_syntax_highlighting();
+    let excerpt = Excerpt::of(told, width);
+    let told = excerpt.as_ref().map_or(told, |excerpt| excerpt as &dyn Diagnostic);
     let mut text = String::new();
     match handler.render_report(&mut text, told) {
         Ok(()) => text.trim_start().to_owned(),

@@ -56,11 +56,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let scene = arguments.source.path.display().to_string();
     let compiled = (compiled.summary(), compiled.tree_shape());
     let info = Info::new(scene, &description, compiled, &expected, load_time);
-    if arguments.json { console::print_json(&info) } else { console::print_folded(&info.to_string(), VALUES) }
+    if arguments.json { console::print_json(&info) } else { console::print(&info.to_string()) }
 }
-
-/// The column of a table's values.
-const VALUES: usize = 14;
 
 /// Field names are the keys of `--json`; units are in the names.
 #[derive(Clone, Debug, Serialize)]

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::{
     console,
-    failure::{Failure, warn_of},
+    failure::Failure,
     metadata::{About, samples},
     output::Output,
     part_file,
@@ -14,14 +14,14 @@ use super::{
     style::StyleOptions,
 };
 use crate::{
-    picture::{Format, save_with},
+    picture::save_with,
     render::part::{Merged, Part, merge},
 };
 
 const EXAMPLES: &str = "\
 Examples:
   packlight merge part-*.exr -o whole.exr
-  packlight merge part-*.exr -o preview.png --partial --tonemap agx";
+  packlight merge part-*.exr -o preview.png --partial";
 
 /// Arguments of `merge`.
 #[derive(Clone, Debug, Args)]
@@ -51,9 +51,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Output { path, format } = &arguments.output;
     arguments.output.check()?;
-    if let Some(option) = arguments.style.only_for_png().filter(|_| *format != Format::Png) {
-        warn_of(format!("{option} only changes a .png; the numbers of this file stay linear"));
-    }
+    arguments.style.warn_of_idle(*format);
     let load = |path: &PathBuf| Ok((path.display().to_string(), part_file::load(path)?));
     let parts = arguments.parts.iter().map(load).collect::<Result<Vec<(String, Part)>, Failure>>()?;
     let count = parts.len();

@@ -24,8 +24,8 @@ use crate::{
 
 const EXAMPLES: &str = "\
 Examples:
-  packlight meter scenes/cornell.xml --at 0,0,0 --normal 0,1,0
-  packlight meter room.xml --samples 1000000 --seed 1 --json";
+  packlight meter cornell.xml --at 0,0,0 --normal 0,1,0
+  packlight meter room.xml --samples 1000000 --json";
 
 /// Arguments of `meter`.
 #[derive(Clone, Debug, Args)]

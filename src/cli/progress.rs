@@ -1,18 +1,30 @@
 //! A bar on a terminal; silence in a pipe.
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::{
+    fmt,
+    time::{Duration, Instant},
+};
+
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use crate::render::Progress;
 
-const TEMPLATE: &str = "rendering [{bar:40}] {percent:>3} %  {elapsed} elapsed, {eta} left";
+/// A bar that is wider than the terminal is taken off the screen in part.
+const TEMPLATE: &str = "rendering [{bar:16}] {percent:>3} %  {elapsed} elapsed, {left} left";
 
 /// Progress of a render on stderr.
 pub(super) struct Bar(ProgressBar);
 
 impl Bar {
-    pub(super) fn new(quiet: bool) -> Self {
+    /// Whatever is left to do, it ends at the deadline.
+    pub(super) fn new(quiet: bool, deadline: Option<Instant>) -> Self {
         let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-        Self(ProgressBar::with_draw_target(None, target).with_style(style()))
+        let left = move |state: &ProgressState, text: &mut dyn fmt::Write| {
+            let left = sooner(state.eta(), deadline, Instant::now());
+            // A bar that can't be written is not shown.
+            let _ = write!(text, "{:#}", HumanDuration(left));
+        };
+        Self(ProgressBar::with_draw_target(None, target).with_style(style().with_key("left", left)))
     }
 
     /// May be called from many threads, in any order.
@@ -28,6 +40,11 @@ impl Bar {
     pub(super) fn finish(self) {
         self.0.finish_and_clear();
     }
+}
+
+/// What is estimated, or the time to the deadline if that is less.
+fn sooner(estimated: Duration, deadline: Option<Instant>, now: Instant) -> Duration {
+    deadline.map_or(estimated, |deadline| estimated.min(deadline.saturating_duration_since(now)))
 }
 
 fn style() -> ProgressStyle {
@@ -46,8 +63,27 @@ mod tests {
     }
 
     #[test]
+    fn a_bar_fits_a_narrow_terminal() {
+        let longest = [("{bar:16}", 16), ("{percent:>3}", 3), ("{elapsed}", 3), ("{left}", 3)];
+        let line = longest.iter().fold(TEMPLATE.to_owned(), |line, (key, columns)| {
+            assert!(line.contains(key), "{key}");
+            line.replace(key, &"=".repeat(*columns))
+        });
+        assert!(line.chars().count() < 60, "{line}");
+    }
+
+    #[test]
+    fn what_is_left_ends_at_the_deadline() {
+        let (now, minute) = (Instant::now(), Duration::from_secs(60));
+        assert_eq!(sooner(minute, None, now), minute);
+        assert_eq!(sooner(minute, Some(now + minute / 2), now), minute / 2);
+        assert_eq!(sooner(minute, Some(now + 2 * minute), now), minute);
+        assert_eq!(sooner(minute, Some(now), now + minute), Duration::ZERO);
+    }
+
+    #[test]
     fn a_late_report_does_not_turn_the_bar_back() {
-        let bar = Bar::new(true);
+        let bar = Bar::new(true, None);
         bar.show(Progress { done: 8, total: 10 });
         bar.show(Progress { done: 3, total: 10 });
         assert_eq!((bar.0.position(), bar.0.length()), (8, Some(10)));

@@ -15,9 +15,9 @@ pub(super) fn grouped(n: u64) -> String {
     text
 }
 
-/// `12.345 M`.
+/// `12.345 M`, and `1,234` where that would be little but noughts.
 pub(super) fn mega(n: u64) -> String {
-    format!("{:.3} M", n as f64 * 1e-6)
+    if n < 10_000 { grouped(n) } else { format!("{:.3} M", n as f64 * 1e-6) }
 }
 
 /// `1 light`, `2 lights`.
@@ -71,6 +71,13 @@ mod tests {
     fn thousands_are_set_apart() {
         for (n, text) in [(0, "0"), (999, "999"), (1000, "1,000"), (1_234_567, "1,234,567")] {
             assert_eq!(grouped(n), text);
+        }
+    }
+
+    #[test]
+    fn few_are_not_told_in_millions() {
+        for (n, text) in [(0, "0"), (9_999, "9,999"), (10_000, "0.010 M"), (12_345_678, "12.346 M")] {
+            assert_eq!(mega(n), text);
         }
     }
 

@@ -14,10 +14,10 @@ mod share;
 
 use std::time::{Duration, Instant};
 
-use clap::{Args, CommandFactory, ValueEnum, error::ErrorKind, value_parser};
+use clap::{Args, ValueEnum, error::ErrorKind, value_parser};
 
 use super::{
-    Cli, MACHINE, console, duration,
+    MACHINE, console, duration,
     failure::{Failure, warn_of},
     memory::{self, MemoryOption},
     metadata,
@@ -52,14 +52,18 @@ const REPORT: &str = "Report";
 
 const EXAMPLES: &str = "\
 Examples:
-  packlight render cornell.xml -o cornell.exr --aov albedo,normal,depth
-  packlight render cornell.xml -o quick.png --time-limit 10s --tonemap agx
-  packlight render cornell.xml -o clean.exr --spp 4096 --target-error 0.01
-  packlight render cornell.xml -o small.png --width 400 --spp 64 --denoise
-  packlight render cornell.xml -o detail.exr --crop 200,312,96,180
-  packlight render cornell.xml -o live.exr --display-server localhost:14158
-  packlight render cornell.xml -o long.exr --checkpoint k.exr --resume k.exr
-  packlight render cornell.xml -o part-3.exr --shard 3/16";
+  packlight render room.xml -o room.exr --aov albedo,normal
+  packlight render room.xml -o quick.png --time-limit 10s
+  packlight render room.xml -o clean.exr \\
+      --spp 4096 --target-error 0.01
+  packlight render room.xml -o small.png \\
+      --width 400 --spp 64 --denoise --tonemap agx
+  packlight render room.xml -o a.exr --crop 200,312,96,180
+  packlight render room.xml -o live.exr \\
+      --display-server localhost:14158
+  packlight render room.xml -o long.exr \\
+      --checkpoint kept.exr --resume kept.exr
+  packlight render room.xml -o part-3.exr --shard 3/16";
 
 /// Arguments of `render`.
 #[derive(Clone, Debug, Args)]
@@ -77,7 +81,7 @@ pub(super) struct Arguments {
     integrator: Option<IntegratorName>,
 
     /// Samples per pixel
-    #[arg(long, value_name = "N", help_heading = PICTURE, value_parser = value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", help_heading = PICTURE, allow_negative_numbers = true, value_parser = value_parser!(u32).range(1..))]
     spp: Option<u32>,
 
     /// Columns; without --height the aspect ratio is kept
@@ -92,7 +96,7 @@ pub(super) struct Arguments {
     crop: CropOptions,
 
     /// Seed of every random decision
-    #[arg(long, value_name = "N", help_heading = PICTURE)]
+    #[arg(long, value_name = "N", help_heading = PICTURE, allow_negative_numbers = true)]
     seed: Option<u32>,
 
     /// Layers of the .exr beside the picture: what the camera sees, averaged over the pixel
@@ -108,7 +112,7 @@ pub(super) struct Arguments {
 
     /// A part of the picture is done when its relative error is estimated to be as small as this; --spp is
     /// the most it takes
-    #[arg(long, value_name = "ERROR", help_heading = PICTURE, value_parser = error)]
+    #[arg(long, value_name = "ERROR", help_heading = PICTURE, allow_negative_numbers = true, value_parser = error)]
     target_error: Option<f32>,
 
     /// Stop after this time, with as many samples as there are then
@@ -125,7 +129,7 @@ pub(super) struct Arguments {
     share: ShardOptions,
 
     /// In place of a picture, the numbers of this pixel's samples
-    #[arg(long, value_name = "X,Y", conflicts_with = "output", value_parser = replay::pixel)]
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, conflicts_with = "output", value_parser = replay::pixel)]
     pixel: Option<[u32; 2]>,
 
     /// Only this sample of the pixel, from 0
@@ -210,12 +214,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let samples = metadata::samples(coverage, report.samples_per_pixel());
     let path = output.path.display();
-    Err(Failure::Stopped(match output.format {
-        Format::Exr => {
-            format!("stopped: {path} has {samples} samples a pixel; --resume {path} continues it")
-        }
-        _ => format!("stopped: {path} has {samples} samples a pixel"),
-    }))
+    let way_on = match arguments.continued_by(output) {
+        Some(kept) => format!("--resume {kept} continues it"),
+        None => "what is to be continued needs an .exr, or a --checkpoint".into(),
+    };
+    Err(Failure::Stopped(format!("stopped: {path} has {samples} samples a pixel; {way_on}")))
 }
 
 /// Load, compile, and one pixel by itself.
@@ -225,7 +228,7 @@ fn numbers(arguments: &Arguments, pixel: [u32; 2]) -> Result<Replay, Failure> {
     let Film { width, height, .. } = description.sensor.film;
     if pixel[0] >= width || pixel[1] >= height {
         let message = format!("--pixel is outside of the picture, which has {width} x {height} pixels");
-        return Err(Cli::command().error(ErrorKind::ValueValidation, message).into());
+        return Err(Failure::usage("render", ErrorKind::ValueValidation, message));
     }
     let scene = compile_with(&description, arguments.quality.quality())?;
     let name = arguments.source.path.display().to_string();
@@ -250,8 +253,8 @@ fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage),
     let file = arguments.source.path.file_name().unwrap_or_default().to_string_lossy();
     let name = Name { scene: &file, facts: &facts };
     let frame = arguments.keep.begin(&scene, plan, &name, arguments.quiet || arguments.json)?;
-    let bar = Bar::new(arguments.quiet);
     let deadline = arguments.time_limit.map(|limit| Instant::now() + limit);
+    let bar = Bar::new(arguments.quiet, deadline);
     let late = || deadline.is_some_and(|deadline| Instant::now() >= deadline);
     let watch = Watch { progress: &|progress| bar.show(progress), stop: &|| signals::wished() || late() };
     let render = || frame.render(&scene, &settings, &watch);
@@ -269,6 +272,7 @@ fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage),
         options: arguments.options(),
         description: &description,
         coverage,
+        continued_by: arguments.continued_by(output).filter(|_| !signals::wished()),
         settings,
         summary: scene.summary(),
         lesson: arguments.stats.then(|| Lesson::new(&scene, &statistics.profile)),
@@ -296,6 +300,12 @@ impl Arguments {
     /// The layers that are asked for.
     fn layers(&self) -> Vec<AovChannel> {
         self.aov.iter().map(|layer| layer.channel()).collect()
+    }
+
+    /// The file from which this render could go on, if it has not ended.
+    fn continued_by(&self, output: &Output) -> Option<String> {
+        let picture = (output.format == Format::Exr).then_some(&output.path);
+        picture.or(self.keep.checkpoint.as_ref()).map(|path| path.display().to_string())
     }
 
     fn settings(&self) -> Settings {

@@ -27,6 +27,10 @@ pub(super) struct Report {
     /// The fewest and the most that a pixel has: other numbers where the render was stopped.
     samples_least: u32,
     samples_most: u32,
+    /// Whether it has all that was asked for.
+    complete: bool,
+    #[serde(skip)]
+    continued_by: Option<String>,
     integrator: String,
     backend: &'static str,
     sorted: bool,
@@ -96,6 +100,8 @@ pub(super) struct Sources<'a> {
     pub(super) options: String,
     pub(super) description: &'a SceneDescription,
     pub(super) coverage: Coverage,
+    /// The file from which it could go on, if that is to be said here.
+    pub(super) continued_by: Option<String>,
     pub(super) settings: Settings,
     pub(super) summary: Summary,
     pub(super) statistics: Statistics,
@@ -120,6 +126,8 @@ impl From<Sources<'_>> for Report {
             samples_per_pixel: description.sensor.sampler.sample_count,
             samples_least: from.coverage.least,
             samples_most: from.coverage.most,
+            complete: from.coverage.complete,
+            continued_by: from.continued_by,
             integrator: IntegratorName::from(&description.integrator).to_string(),
             backend: match from.settings.backend {
                 Backend::Packet => "packet",
@@ -160,10 +168,15 @@ impl From<Sources<'_>> for Report {
 
 impl Report {
     fn samples(&self) -> String {
-        match (self.samples_least, self.samples_most) {
-            (least, most) if least == most => counted(most, "sample"),
-            (least, most) => format!("{} to {}", grouped(least.into()), counted(most, "sample")),
-        }
+        let of =
+            if self.complete { String::new() } else { format!("{} of ", grouped(self.samples_most.into())) };
+        let most = if self.complete { self.samples_most } else { self.samples_per_pixel };
+        let least = if self.samples_least == self.samples_most {
+            String::new()
+        } else {
+            format!("{} to ", grouped(self.samples_least.into()))
+        };
+        format!("{least}{of}{}", counted(most, "sample"))
     }
 
     /// As they were asked for.
@@ -203,6 +216,9 @@ impl fmt::Display for Report {
             self.samples(),
             self.integrator
         )?;
+        if let Some(kept) = self.continued_by.as_ref().filter(|_| !self.complete) {
+            writeln!(f, "  stopped  --resume {kept} continues it")?;
+        }
         if let Some(Denoised { output, by, seconds: spent }) = &self.denoised {
             writeln!(f, "  denoised {output}, by {by} in {}", seconds(*spent))?;
         }
@@ -233,10 +249,13 @@ impl fmt::Display for Report {
             "packet" => {
                 let Profile { trace, sort, shade, add } = self.profile;
                 let [trace, sort, shade, add] = [trace, sort, shade, add].map(|share| 100.0 * share);
-                writeln!(
-                    f,
-                    "  profile  trace {trace:.1} %, sort {sort:.1} %, shade {shade:.1} %, add {add:.1} %"
-                )?;
+                // What goes on from all its samples has no time to share out.
+                if trace + sort + shade + add > 0.0 {
+                    writeln!(
+                        f,
+                        "  profile  trace {trace:.1} %, sort {sort:.1} %, shade {shade:.1} %, add {add:.1} %"
+                    )?;
+                }
                 let [trace, shade] = [self.lane_use.trace, self.lane_use.shade].map(|used| 100.0 * used);
                 writeln!(
                     f,
@@ -268,6 +287,7 @@ mod tests {
             options: " --seed 9".into(),
             description: &SceneDescription::default(),
             coverage: Coverage { least: 4, most: 4, complete: true },
+            continued_by: Some("kept.exr".into()),
             settings: Settings::default(),
             summary: Summary { triangles: 1234, lights: 1, ..Summary::default() },
             statistics,
@@ -303,6 +323,19 @@ mod tests {
         {
             assert!(text.contains(part), "{part} is not in\n{text}");
         }
+    }
+
+    #[test]
+    fn what_has_not_ended_says_how_it_goes_on() {
+        let mut report = report(Statistics::default());
+        let text = report.to_string();
+        assert!(text.contains(", 4 samples a pixel, ") && !text.contains("kept.exr"), "{text}");
+        (report.samples_per_pixel, report.complete) = (4096, false);
+        let text = report.to_string();
+        assert!(text.contains(", 4 of 4,096 samples a pixel, "), "{text}");
+        assert!(text.contains("\n  stopped  --resume kept.exr continues it\n"), "{text}");
+        report.samples_most = 8;
+        assert!(report.to_string().contains(", 4 to 8 of 4,096 samples a pixel, "), "{report}");
     }
 
     #[test]

@@ -1,6 +1,9 @@
 //! `packlight completions SHELL` and `packlight man FOLDER`: what the command line says of itself.
 
-use std::path::{Path, PathBuf};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 use clap::{Args, Command, CommandFactory};
 use clap_complete::Shell;
@@ -12,7 +15,8 @@ const SHELLS: &str = "\
 Examples:
   source <(packlight completions bash)
   packlight completions zsh > ~/.zfunc/_packlight
-  packlight completions fish > ~/.config/fish/completions/packlight.fish";
+  packlight completions fish \\
+      > ~/.config/fish/completions/packlight.fish";
 
 const PAGES: &str = "\
 Examples:
@@ -31,7 +35,7 @@ pub(super) struct Completions {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = PAGES)]
 pub(super) struct Manual {
-    /// Folder for one page a command: packlight.1, packlight-render.1 …
+    /// Folder for one page a command: packlight.1, packlight-render.1 …; made if it is not there
     #[arg(value_name = "FOLDER")]
     folder: PathBuf,
 }
@@ -40,7 +44,7 @@ pub(super) struct Manual {
 pub(super) fn complete(arguments: &Completions) -> Result<(), Failure> {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut Cli::command(), "packlight", &mut script);
-    console::print(&String::from_utf8_lossy(&script))
+    console::print_as_it_is(&String::from_utf8_lossy(&script))
 }
 
 /// Writes pages for `man`.
@@ -48,6 +52,9 @@ pub(super) fn manual(arguments: &Manual) -> Result<(), Failure> {
     // `packlight help` has nothing to say that a page does not, and lanes are those of one machine.
     let mut program = Cli::command().disable_help_subcommand(true).version(env!("CARGO_PKG_VERSION"));
     program.build();
+    let folder = &arguments.folder;
+    fs::create_dir_all(folder)
+        .map_err(|error| Failure::Sentence(format!("{}: {error}", folder.display())))?;
     write_pages(&arguments.folder, &program, "packlight")
 }
 

@@ -2,19 +2,22 @@
 
 use clap::{Args, ValueEnum};
 
-use super::metadata::{About, Metadata};
-use crate::picture::{ExrCompression, ExrStyle, Preview, Style, Tone};
+use super::{
+    failure::warn_of,
+    metadata::{About, Metadata},
+};
+use crate::picture::{ExrCompression, ExrStyle, Format, Preview, Style, Tone};
 
 const FILE: &str = "File";
 
 /// The options.
 #[derive(Clone, Debug, Args)]
 pub(super) struct StyleOptions {
-    /// Stops by which a .png is brightened
+    /// Stops by which a .png is brightened; none if not given
     #[arg(long, value_name = "STOPS", help_heading = FILE, allow_negative_numbers = true, value_parser = stops)]
     exposure: Option<f32>,
 
-    /// What becomes of light that is too bright for a .png
+    /// What becomes of light that is too bright for a .png; `none` if not given
     #[arg(long, value_name = "NAME", help_heading = FILE)]
     tonemap: Option<ToneName>,
 
@@ -91,12 +94,21 @@ impl StyleOptions {
         }
     }
 
-    /// An option that does nothing to a file whose numbers stay as they are.
-    pub(super) fn only_for_png(&self) -> Option<&'static str> {
-        match (self.exposure, self.tonemap) {
-            (Some(_), _) => Some("--exposure"),
-            (None, Some(_)) => Some("--tonemap"),
-            (None, None) => None,
+    /// Warns of options that do nothing to a file of this format.
+    pub(super) fn warn_of_idle(&self, format: Format) {
+        let for_png = [("--exposure", self.exposure.is_some()), ("--tonemap", self.tonemap.is_some())];
+        let for_exr = [
+            ("--exr-type", self.exr_type != ExrType::Float),
+            ("--exr-compression", self.exr_compression != CompressionName::Zip),
+            ("--metadata", self.metadata != Metadata::Picture),
+        ];
+        let first =
+            |options: &[(&'static str, bool)]| options.iter().find(|option| option.1).map(|option| option.0);
+        if let Some(option) = first(&for_png).filter(|_| format != Format::Png) {
+            warn_of(format!("{option} only changes a .png; the numbers of this file stay linear"));
+        }
+        if let Some(option) = first(&for_exr).filter(|_| format != Format::Exr) {
+            warn_of(format!("{option} only changes an .exr"));
         }
     }
 }

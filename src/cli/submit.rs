@@ -23,14 +23,16 @@ const MOST: i64 = 1 << 20;
 
 const EXAMPLES: &str = "\
 Examples:
-  packlight submit slurm scenes/cornell.xml -o out.exr --shards 16
-  packlight submit slurm room.xml -o room.exr --shards 16 --cpus 8 --run
-  packlight submit slurm room.xml -o room.exr --shards 64 -- --spp 4096
-  packlight submit slurm room.xml -o room.exr --shards 64 --sbatch=--time=9:00
+  packlight submit slurm room.xml -o room.exr --shards 16
+  packlight submit slurm room.xml -o room.exr --shards 16 \\
+      --cpus 8 --sbatch=--time=9:00 --run
+  packlight submit slurm room.xml -o room.exr --shards 64 \\
+      -- --spp 4096
 
-Scene, OUT and the program must be where all nodes see them. Submitted twice, it
-goes on from its checkpoints. How OUT is written (--exr-type half …) is up to
-`merge`: render by the script, merge again by hand.";
+Scene, OUT and the program must be where all nodes see them.
+Submitted twice, it goes on from its checkpoints. How OUT is
+written (--exr-type half …) is up to `merge`: render by the
+script, merge again by hand.";
 
 /// Arguments of `submit`.
 #[derive(Clone, Debug, Args)]

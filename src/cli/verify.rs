@@ -35,7 +35,8 @@ Examples:
   packlight verify scenes/cornell.xml
   packlight verify bunny.obj --most 10000 --into faults
   packlight verify bunny.obj --against embree
-  packlight verify bunny.obj --rays faults/primary.rays --expect hit";
+  packlight verify bunny.obj --rays faults/primary.rays \\
+      --expect hit";
 
 /// Arguments of `verify`.
 #[derive(Clone, Debug, Args)]

@@ -13,13 +13,13 @@ pub(super) struct CropOptions {
     ///
     /// In pixels of the whole picture, in place of the scene's own crop. Pixels are to the bit what they are in
     /// the whole; but tiles begin at the crop, so by --target-error others of them may be done.
-    #[arg(long, visible_alias = "pixelbounds", value_name = "x0,x1,y0,y1", conflicts_with = "pixel", value_parser = parse)]
+    #[arg(long, visible_alias = "pixelbounds", value_name = "x0,x1,y0,y1", allow_hyphen_values = true, conflicts_with = "pixel", value_parser = parse)]
     crop: Option<Bounds>,
 
     /// The same in shares of the width and height, as in 0.5,1,0,0.5 for the upper right quarter
     ///
     /// Shares are rounded up to whole pixels, as pbrt does: windows that share an edge share no pixel.
-    #[arg(long, value_name = "x0,x1,y0,y1", conflicts_with_all = ["pixel", "crop"], value_parser = parse_window)]
+    #[arg(long, value_name = "x0,x1,y0,y1", allow_hyphen_values = true, conflicts_with_all = ["pixel", "crop"], value_parser = parse_window)]
     cropwindow: Option<Window>,
 }
 

@@ -18,7 +18,7 @@ use crate::{
     render::{Frame, Plan, part::Part},
 };
 
-const KEEP: &str = "Checkpoints (what is continued ends in the same bits as what was never stopped)";
+const KEEP: &str = "Checkpoints (to go on from one ends in the same bits)";
 
 /// The options.
 #[derive(Clone, Debug, Args)]
@@ -81,7 +81,9 @@ impl KeepOptions {
         if !quiet {
             let asked = plan.shard.samples(frame.samples()).len() as u32;
             let there = samples(frame.coverage(), asked);
-            console::print(&format!("{path} has {there} samples a pixel; going on from there\n"))?;
+            let then =
+                if frame.coverage().complete { "nothing is left to render" } else { "going on from there" };
+            console::print(&format!("{path} has {there} samples a pixel; {then}\n"))?;
         }
         Ok(frame)
     }

@@ -124,18 +124,18 @@ impl fmt::Display for Lesson {
         writeln!(f, "  one sample of each pixel, counted:")?;
         writeln!(
             f,
-            "    {:<8} {:>11} {:>17} {:>25} {:>7}",
+            "    {:<6} {:>9} {:>13} {:>19} {:>5}",
             "", "", "alone, a ray", "in company, a ray", "lanes"
         )?;
         writeln!(
             f,
-            "    {:<8} {:>11} {:>8} {:>8} {:>8} {:>8} {:>7} {:>7}",
+            "    {:<6} {:>9} {:>6} {:>6} {:>6} {:>6} {:>5} {:>5}",
             "rays", "number", "nodes", "prims", "nodes", "prims", "tests", "%"
         )?;
         for rays in &self.rays {
             writeln!(
                 f,
-                "    {:<8} {:>11} {:>8.2} {:>8.2} {:>8.2} {:>8.2} {:>7.2} {:>7.1}",
+                "    {:<6} {:>9} {:>6.2} {:>6.2} {:>6.2} {:>6.2} {:>5.2} {:>5.1}",
                 rays.kind,
                 grouped(rays.count),
                 rays.nodes_per_ray,

@@ -2,17 +2,11 @@
 
 use std::time::Duration;
 
-use clap::{CommandFactory, error::ErrorKind};
+use clap::error::ErrorKind;
 
 use super::{Arguments, denoised, share};
 use crate::{
-    cli::{
-        Cli,
-        failure::{Failure, warn_of},
-        memory::Expected,
-        output::Output,
-        overrides::IntegratorName,
-    },
+    cli::{failure::Failure, memory::Expected, output::Output, overrides::IntegratorName},
     load::Loaded,
     picture::{Format, check_layout},
     render::{self, Conditions, Plan, Shard},
@@ -43,9 +37,7 @@ pub(super) fn planned(arguments: &Arguments, output: &Output) -> Result<Planned,
         can_denoise(arguments, description)?;
         description.aovs.extend(denoised::besides(&description.aovs));
     }
-    if let Some(option) = arguments.style.only_for_png().filter(|_| output.format != Format::Png) {
-        warn_of(format!("{option} only changes a .png; the numbers of this file stay linear"));
-    }
+    arguments.style.warn_of_idle(output.format);
     can_be_written(description)?;
     let plan = plan(arguments, description, output.format)?;
     let may_be_part = arguments.time_limit.is_some() || plan.shard != Shard::WHOLE;
@@ -60,7 +52,7 @@ pub(super) fn planned(arguments: &Arguments, output: &Output) -> Result<Planned,
 }
 
 fn refused(kind: ErrorKind, message: impl Into<String>) -> Failure {
-    Cli::command().error(kind, message.into()).into()
+    Failure::usage("render", kind, message.into())
 }
 
 /// Named channels fit nowhere but into an EXR.

@@ -125,12 +125,12 @@ impl fmt::Display for Findings {
         writeln!(f)?;
         writeln!(
             f,
-            "  {:<12} {:>12} {:>12} {:>12} {:>12}",
+            "  {:<11} {:>10} {:>10} {:>12} {:>11}",
             "class", "rays", "hits", "brute force", "mismatches"
         )?;
         for ClassRow { class, rays, hits, brute_force, mismatches } in &self.classes {
             let [rays, hits, brute, mismatches] = [*rays, *hits, *brute_force, *mismatches].map(grouped);
-            writeln!(f, "  {class:<12} {rays:>12} {hits:>12} {brute:>12} {mismatches:>12}")?;
+            writeln!(f, "  {class:<11} {rays:>10} {hits:>10} {brute:>12} {mismatches:>11}")?;
         }
         if let Some(LeakRow { edges, vertices, rays, leaks }) = self.leaks {
             writeln!(
