@@ -7,7 +7,7 @@ use crate::geometry::{Canonical, CanonicalKind, Sphere};
 use crate::light::LightId;
 use crate::material::MaterialId;
 use crate::math::{Frame, INV_PI, INV_TWO_PI, acos, atan2};
-use crate::simd::{Bits, Mask, Real, Vector3, vector3};
+use crate::simd::{Bits, MOST, Mask, Real, Vector3, vector3};
 use crate::texture::Coordinates;
 
 pub(super) mod partials;
@@ -170,7 +170,7 @@ impl Surfaces {
             let part = self.of_one_shape(row, (org, dir), (t, u, v), primitive, asked.mapped);
             (part, R::splat(row.side), R::Bits::splat(row.light.0))
         } else {
-            let rows: [&ShapeRow; 8] =
+            let rows: [&ShapeRow; MOST] =
                 std::array::from_fn(|i| &self.shapes[shape(if i < R::LANES { i } else { 0 }) as usize]);
             let part = self.of_several_shapes(&rows, (org, dir), (t, u, v), primitive);
             (part, R::from_fn(|i| rows[i].side), R::Bits::from_fn(|i| rows[i].light.0))
@@ -178,7 +178,7 @@ impl Surfaces {
         let (n_g, n_s) = (part.n_g.scale(side), part.n_s.scale(side));
         let (mut frame, mut moves) = (Frame::around(n_s), [Vector3::zero(); 2]);
         if asked.oriented {
-            let mut lanes = [[Vec3::ZERO; 2]; 8];
+            let mut lanes = [[Vec3::ZERO; 2]; MOST];
             for (i, lane) in lanes[..R::LANES].iter_mut().enumerate() {
                 *lane = self.partials(primitive.lane(i), part.position.lane(i), part.n_g.lane(i));
             }
@@ -231,7 +231,7 @@ impl Surfaces {
 
     fn of_several_shapes<R: Real>(
         &self,
-        rows: &[&ShapeRow; 8],
+        rows: &[&ShapeRow; MOST],
         (org, dir): (Vector3<R>, Vector3<R>),
         (t, u, v): (R, R, R),
         primitive: R::Bits,
@@ -301,7 +301,7 @@ impl Surfaces {
         (smooth, mapped): (u32, u32),
         (u, v): (R, R),
     ) -> Part<R> {
-        let mut corners = [[0; 3]; 8];
+        let mut corners = [[0; 3]; MOST];
         for (i, corner) in corners[..R::LANES].iter_mut().enumerate() {
             *corner = self.triangles[index(i)];
         }

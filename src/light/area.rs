@@ -12,7 +12,7 @@ use glam::Vec3;
 use super::{LightSample, Reach, rectangle::Rectangle};
 use crate::geometry::{Aabb, CanonicalKind, Sphere, Triangle, offset_origin};
 use crate::math::{Frame, sin_cos_turns, warp};
-use crate::simd::{Mask, Real, Vector3, vector3};
+use crate::simd::{MOST, Mask, Real, Vector3, vector3};
 
 /// A shape with an emission.
 #[derive(Clone, Debug)]
@@ -208,7 +208,7 @@ impl<R: Real> Picked<R> {
 
     /// By bisection, lane by lane.
     fn among_many(triangles: &[Triangle], normals: &[Vec3], sums: &[f32], target: R) -> Self {
-        let mut picked = [0; 8];
+        let mut picked = [0; MOST];
         for (lane, place) in picked[..R::LANES].iter_mut().enumerate() {
             *place = sums.partition_point(|&sum| sum <= target.lane(lane)).min(sums.len() - 1);
         }

@@ -19,7 +19,7 @@ use glam::{DVec3, Vec3};
 
 use super::distribution::{find, linear, push_sums};
 use crate::math::{Frame, INV_TWO_PI, atan2, sin_cos_turns};
-use crate::simd::{Bits, Real, Vector3, vector3};
+use crate::simd::{Bits, MOST, Real, Vector3, vector3};
 
 mod integral;
 #[cfg(test)]
@@ -128,7 +128,7 @@ impl Envmap {
 
     #[inline]
     fn edges_of<R: Real>(&self, row: R::Bits) -> (R, R) {
-        let edges: [(f32, f32); 8] =
+        let edges: [(f32, f32); MOST] =
             std::array::from_fn(|i| if i < R::LANES { self.edges(row.lane(i) as usize) } else { (0.0, 0.0) });
         (R::from_fn(|i| edges[i].0), R::from_fn(|i| edges[i].1))
     }

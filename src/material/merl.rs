@@ -20,7 +20,7 @@ use glam::Vec3;
 
 use super::{Sample, lambert::above, rough_conductor::reflect};
 use crate::math::{Digest, acos, atan2, sin_cos_turns, warp};
-use crate::simd::{Bits, Real, Vector3, vector3};
+use crate::simd::{Bits, MOST, Real, Vector3, vector3};
 pub use file::MerlError;
 use lobe::Lobe;
 
@@ -88,7 +88,7 @@ impl MerlTable {
         let turn = phi_d / R::splat(PI) * R::splat(phi_cells as f32) + R::splat(phi_cells as f32 - 0.5);
         let low = turn.floor();
         let (phi_cell, phi_part) = (low.to_int(), turn - low);
-        let mut lanes = [[0.0f32; 3]; 8];
+        let mut lanes = [[0.0f32; 3]; MOST];
         for (i, lane) in lanes[..R::LANES].iter_mut().enumerate() {
             let (h, d) = (h_cell.lane(i) as usize, d_cell.lane(i) as usize);
             let phi = phi_cell.lane(i) as usize;

@@ -8,7 +8,7 @@ use crate::bvh::Traversal;
 use crate::compile::Scene;
 use crate::geometry::Ray;
 use crate::scene::{Aov, AovChannel};
-use crate::simd::{LANES, Real, Vector3};
+use crate::simd::{MOST, Real, Vector3};
 
 /// Channels of the layers beside a picture, named as compositing programs know them: distance is `Z`.
 pub(super) fn layers(aovs: &[AovChannel]) -> impl Iterator<Item = String> + '_ {
@@ -125,7 +125,7 @@ impl AovIntegrator {
 /// Nodes and primitives that rays are tested against, each by itself: what packets do depends on their neighbours.
 #[cold]
 fn counts<R: Real>(scene: &Scene, (org, dir): Line<R>) -> (R, R) {
-    let mut lanes = [Counts::default(); LANES];
+    let mut lanes = [Counts::default(); MOST];
     for (i, counts) in lanes[..R::LANES].iter_mut().enumerate() {
         let mut traversal = Traversal::new(Counts::default());
         scene.closest_hit(&Ray::new(org.lane(i), dir.lane(i), 0.0, f32::INFINITY), &mut traversal);

@@ -1,4 +1,4 @@
-//! What a group of eight says while it is shaded: light, shadow rays, and how its paths go on.
+//! What a group says while it is shaded: light, shadow rays, and how its paths go on.
 
 use bumpalo::collections::Vec as BumpVec;
 
@@ -7,7 +7,7 @@ use super::connections::Connections;
 use super::integrator::{End, Outgoing, Path};
 use super::rows::{Packet, Paths, reserve};
 use crate::film::sums::Quad;
-use crate::simd::{LANES, Mask, Mask8, Real, Vec3x8, f32x8, u32x8};
+use crate::simd::{Eights, LANES, MOST, Mask, Vector3, u32x8};
 
 /// What the groups of a round have said, by slot.
 pub(super) struct Outputs<'a> {
@@ -34,45 +34,55 @@ impl Outputs<'_> {
     }
 }
 
-/// A group of at most eight slots that is being shaded.
-pub(super) struct Group<'g, 'a> {
-    pub(super) slots: [u32; LANES],
+/// A group of at most as many slots as `R` has lanes that is being shaded.
+pub(super) struct Group<'g, 'a, R: Eights> {
+    pub(super) slots: [u32; MOST],
     pub(super) count: usize,
-    pub(super) pixel: u32x8,
+    pub(super) pixel: R::Bits,
     pub(super) out: &'g mut Outputs<'a>,
     pub(super) ends: Option<&'g mut Ends>,
 }
 
-impl Outgoing<f32x8> for Group<'_, '_> {
+impl<R: Eights> Outgoing<R> for Group<'_, '_, R> {
     #[inline]
-    fn add(&mut self, channel: usize, value: f32x8) {
+    fn add(&mut self, channel: usize, value: R) {
         // Most surfaces don't shine.
-        if value.equal(f32x8::zero()).all() {
+        if (!value.equal(R::zero())).none() {
             return;
         }
-        for (&slot, value) in self.slots[..self.count].iter().zip(value.to_array()) {
-            self.out.added[slot as usize * self.out.quads + channel / 4][channel % 4] = value;
+        for (i, &slot) in self.slots[..self.count].iter().enumerate() {
+            self.out.added[slot as usize * self.out.quads + channel / 4][channel % 4] = value.lane(i);
         }
     }
 
     #[inline]
-    fn shadow(&mut self, _: usize, lanes: Mask8, ray: (Vec3x8, Vec3x8, f32x8), radiance: Vec3x8) {
+    fn shadow(
+        &mut self,
+        _: usize,
+        lanes: R::Mask,
+        (org, dir, t_far): (Vector3<R>, Vector3<R>, R),
+        radiance: Vector3<R>,
+    ) {
         let lanes = lanes.to_bitmask() & ((1 << self.count) - 1);
-        if lanes == 0 {
-            return;
+        for (i, slots) in self.slots.as_chunks::<LANES>().0.iter().enumerate().take(R::LANES / LANES) {
+            let lanes = lanes >> (i * LANES) & 0xff;
+            if lanes != 0 {
+                let [org, dir, radiance] = [org, dir, radiance].map(|v| v.each(|v| v.eight(i)));
+                let ray = (org, dir, t_far.eight(i));
+                self.out.connections.push(lanes, ray, radiance, u32x8::new(*slots));
+            }
         }
-        self.out.connections.push(lanes, ray, radiance, u32x8::new(self.slots));
     }
 
     #[inline]
-    fn next(&mut self, index: usize, lanes: Mask8, (org, dir): (Vec3x8, Vec3x8), path: &Path<f32x8>) {
+    fn next(&mut self, index: usize, lanes: R::Mask, (org, dir): (Vector3<R>, Vector3<R>), path: &Path<R>) {
         let lanes = lanes.to_bitmask();
         if lanes == 0 {
             return;
         }
         let branches = self.out.branches as u32;
-        let at: [u32; LANES] = std::array::from_fn(|i| self.slots[i] * branches + index as u32);
-        let packet = Packet { org, dir, t_far: f32x8::splat(f32::INFINITY), path: *path, pixel: self.pixel };
+        let at: [u32; MOST] = std::array::from_fn(|i| self.slots[i] * branches + index as u32);
+        let packet = Packet { org, dir, t_far: R::splat(f32::INFINITY), path: *path, pixel: self.pixel };
         // Rows of paths that end here are written too, and left where they are.
         self.out.next.store(&at[..self.count], &packet);
         for (i, &at) in at[..self.count].iter().enumerate() {
@@ -81,7 +91,7 @@ impl Outgoing<f32x8> for Group<'_, '_> {
     }
 
     #[inline]
-    fn end(&mut self, why: End, lanes: Mask8) {
+    fn end(&mut self, why: End, lanes: R::Mask) {
         if let Some(ends) = &mut self.ends {
             ends.add(why, lanes.to_bitmask() & ((1 << self.count) - 1));
         }
@@ -94,7 +104,7 @@ mod tests {
 
     use super::super::rows::fill;
     use super::*;
-    use crate::simd::Bits;
+    use crate::simd::{Bits, Mask8, Real, Vec3x8, f32x8};
 
     #[test]
     fn lanes_beyond_the_count_say_nothing() {
@@ -110,8 +120,13 @@ mod tests {
         out.clear(16, 1);
         let all = Mask8::splat(true);
         let (zero, one) = (Vec3x8::zero(), f32x8::splat(1.0));
-        let mut group =
-            Group { slots: fill(&[3, 9]), count: 2, pixel: u32x8::splat(7), out: &mut out, ends: None };
+        let mut group = Group::<f32x8> {
+            slots: fill(&[3, 9]),
+            count: 2,
+            pixel: u32x8::splat(7),
+            out: &mut out,
+            ends: None,
+        };
         group.add(0, one);
         group.shadow(0, all, (zero, zero, one), zero);
         group.next(0, all, (zero, zero), &Path::start(u32x8::splat(1), 0));

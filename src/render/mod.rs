@@ -25,6 +25,7 @@ mod pixel_format;
 mod ray_classes;
 mod reference;
 mod rows;
+mod shading;
 mod shard;
 mod sort;
 mod statistics;

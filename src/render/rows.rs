@@ -7,7 +7,9 @@ use bumpalo::{Bump, collections::Vec as BumpVec};
 
 use super::integrator::Path;
 use crate::geometry::{Hit, PrimitiveId, RayLanes};
-use crate::simd::{Bits, LANES, Mask, Real, Vec3x8, compress, f32x8, transpose, u32x8, vector3};
+use crate::simd::{
+    Bits, Eights, LANES, MOST, Mask, Real, Vector3, compress, f32x8, transpose, u32x8, vector3,
+};
 
 /// Eight numbers a slot. Lengths are padded to whole packets.
 pub(super) type Rows<'a> = BumpVec<'a, f32x8>;
@@ -22,33 +24,35 @@ pub(super) fn reserve<T: Clone>(slots: &mut BumpVec<T>, len: usize, fresh: T) {
 
 /// Number k of each of these slots in register k.
 #[inline]
-fn gather(rows: &[f32x8], slots: &[u32; LANES]) -> [f32x8; LANES] {
-    transpose(std::array::from_fn(|i| rows[slots[i] as usize]))
+fn gather<R: Real>(rows: &[f32x8], slots: &[u32]) -> [R; 8] {
+    R::from_rows(|i| rows[slots[i] as usize].to_array())
 }
 
-/// The other way round, for the first `count` slots.
+/// The other way round, for as many slots as there are.
 #[inline]
-fn scatter(rows: &mut [f32x8], at: &[u32], numbers: [f32x8; LANES]) {
-    let packet = transpose(numbers);
-    for (row, &at) in packet.iter().zip(at) {
-        rows[at as usize] = *row;
+fn scatter<R: Eights>(rows: &mut [f32x8], at: &[u32], numbers: &[R; 8]) {
+    for (i, at) in at.chunks(LANES).enumerate() {
+        let eight = transpose(std::array::from_fn(|k| numbers[k].eight(i)));
+        for (row, &at) in eight.iter().zip(at) {
+            rows[at as usize] = *row;
+        }
     }
 }
 
-/// Slots for a packet from fewer than eight: the last is repeated, so that every lane holds a real path.
+/// Slots for a group from fewer than its lanes: the last is repeated, so that every lane holds a real path.
 #[inline]
-pub(super) fn fill(slots: &[u32]) -> [u32; LANES] {
+pub(super) fn fill(slots: &[u32]) -> [u32; MOST] {
     std::array::from_fn(|i| slots[i.min(slots.len() - 1)])
 }
 
-/// Eight paths: their rays, what they are worth, and the places of their pixels in the tile.
+/// Paths in lanes: their rays, what they are worth, and the places of their pixels in the tile.
 #[derive(Clone, Copy)]
-pub(super) struct Packet {
-    pub(super) org: Vec3x8,
-    pub(super) dir: Vec3x8,
-    pub(super) t_far: f32x8,
-    pub(super) path: Path<f32x8>,
-    pub(super) pixel: u32x8,
+pub(super) struct Packet<R: Real> {
+    pub(super) org: Vector3<R>,
+    pub(super) dir: Vector3<R>,
+    pub(super) t_far: R,
+    pub(super) path: Path<R>,
+    pub(super) pixel: R::Bits,
 }
 
 /// Paths in flight. A path that ends leaves its rows where they are: those that go on keep theirs, and are named
@@ -81,18 +85,21 @@ impl<'a> Paths<'a> {
 
     /// Writes the first lanes of a packet to the places `at`.
     #[inline]
-    pub(super) fn store(&mut self, at: &[u32], packet: &Packet) {
+    pub(super) fn store<R: Eights>(&mut self, at: &[u32], packet: &Packet<R>) {
         let Packet { org, dir, t_far, path, pixel } = packet;
-        let key = f32x8::from_bits(path.key);
-        scatter(&mut self.rays, at, [org.x, org.y, org.z, dir.x, dir.y, dir.z, *t_far, key]);
-        let (beta, pixel) = (path.beta, f32x8::from_bits(*pixel));
-        scatter(&mut self.worth, at, [beta.x, beta.y, beta.z, path.pdf, path.eta2, pixel, pixel, pixel]);
+        let key = R::from_bits(path.key);
+        scatter(&mut self.rays, at, &[org.x, org.y, org.z, dir.x, dir.y, dir.z, *t_far, key]);
+        let (beta, pixel) = (path.beta, R::from_bits(*pixel));
+        scatter(&mut self.worth, at, &[beta.x, beta.y, beta.z, path.pdf, path.eta2, pixel, pixel, pixel]);
     }
 
     /// The paths in some slots.
     #[inline]
-    pub(super) fn packet(&self, slots: &[u32; LANES], depth: u32, sample: u32) -> Packet {
-        let places = std::array::from_fn(|i| self.places[slots[i] as usize]);
+    pub(super) fn packet<R: Real>(&self, slots: &[u32; MOST], depth: u32, sample: u32) -> Packet<R> {
+        let mut places = [0; MOST];
+        for (place, &slot) in places[..R::LANES].iter_mut().zip(slots) {
+            *place = self.places[slot as usize];
+        }
         let [ox, oy, oz, dx, dy, dz, t_far, key] = gather(&self.rays, &places);
         let [r, g, b, pdf, eta2, pixel, ..] = gather(&self.worth, &places);
         Packet {
@@ -107,7 +114,7 @@ impl<'a> Paths<'a> {
     /// The rays of the packet that starts at a slot.
     #[inline]
     pub(super) fn rays(&self, first: usize) -> RayLanes<f32x8> {
-        let places = self.places[first..].first_chunk().copied().unwrap_or_default();
+        let places: [u32; LANES] = self.places[first..].first_chunk().copied().unwrap_or_default();
         let [ox, oy, oz, dx, dy, dz, t_far, _] = gather(&self.rays, &places);
         RayLanes::new(vector3(ox, oy, oz), vector3(dx, dy, dz), f32x8::zero(), t_far)
     }
@@ -198,12 +205,11 @@ impl<'a> Hits<'a> {
 
     /// ((t, u, v), primitives) of some slots.
     #[inline]
-    pub(super) fn packet(&self, slots: &[u32; LANES]) -> ((f32x8, f32x8, f32x8), u32x8) {
-        let row = |i: usize| {
+    pub(super) fn packet<R: Real>(&self, slots: &[u32; MOST]) -> ((R, R, R), R::Bits) {
+        let [t, u, v, primitive, ..] = R::from_rows(|i| {
             let [t, u, v, primitive] = self.0[slots[i] as usize];
-            f32x8::new([t, u, v, primitive, 0.0, 0.0, 0.0, 0.0])
-        };
-        let [t, u, v, primitive, ..] = transpose(std::array::from_fn(row));
+            [t, u, v, primitive, 0.0, 0.0, 0.0, 0.0]
+        });
         ((t, u, v), primitive.to_bits())
     }
 }

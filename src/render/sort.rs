@@ -1,8 +1,8 @@
-//! Hits sorted by material, so that each material is shaded eight at a time.
+//! Hits sorted by material, so that each material is shaded eight or sixteen at a time.
 
 use bumpalo::{Bump, collections::Vec as BumpVec};
 
-use crate::simd::LANES;
+use crate::simd::{LANES, MOST};
 
 /// A stable counting sort of slots by a small key.
 pub(super) struct Sorter<'a> {
@@ -39,11 +39,11 @@ impl<'a> Sorter<'a> {
         }
     }
 
-    /// Calls `group` with (key, at most eight slots of that key) until every slot has been seen.
+    /// Calls `group` with (key, at most [`MOST`] slots of that key) until every slot has been seen.
     pub(super) fn for_each_group(&self, mut group: impl FnMut(u32, &[u32])) {
         let mut start = 0;
         for (key, &end) in self.ends.iter().enumerate() {
-            for slots in self.order[start..end as usize].chunks(LANES) {
+            for slots in self.order[start..end as usize].chunks(MOST) {
                 group(key as u32, slots);
             }
             start = end as usize;
@@ -51,7 +51,7 @@ impl<'a> Sorter<'a> {
     }
 }
 
-/// The same without sorting: neighbours are shaded together only if they happen to have one key.
+/// The same eight by eight, without sorting: neighbours are shaded together only if they happen to have one key.
 pub(super) fn for_each_unsorted_group(keys: &[u32], mut group: impl FnMut(u32, &[u32])) {
     for first in (0..keys.len()).step_by(LANES) {
         let mut left: u32 = (1 << (keys.len() - first).min(LANES)) - 1;
@@ -85,7 +85,7 @@ mod tests {
             sorter.sort(&keys);
             sorted.clear();
             sorter.for_each_group(|key, slots| {
-                assert!((1..=8).contains(&slots.len()));
+                assert!((1..=MOST).contains(&slots.len()));
                 assert!(slots.iter().all(|&slot| keys[slot as usize] == key));
                 sorted.extend_from_slice(slots);
             });

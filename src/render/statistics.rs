@@ -10,7 +10,7 @@ use std::{
 pub struct LaneUse {
     /// Lanes with work.
     pub active: u64,
-    /// Lanes in all: eight a group.
+    /// Lanes in all: eight or sixteen a group.
     pub total: u64,
 }
 
@@ -28,10 +28,10 @@ impl LaneUse {
         Self { active: rays as u64, total: total as u64 }
     }
 
-    /// A group of eight with this many lanes at work.
+    /// A group with this many lanes at work: in eights.
     pub(super) fn add(&mut self, active: u32) {
         self.active += u64::from(active);
-        self.total += crate::simd::LANES as u64;
+        self.total += u64::from(active.next_multiple_of(crate::simd::LANES as u32));
     }
 }
 

@@ -1,7 +1,7 @@
-//! A tile, eight rays at a time.
+//! A tile, eight rays at a time and more.
 //!
 //! One round takes all paths of the tile by one vertex: trace, sort by material, shade in groups of
-//! eight, trace the shadow rays, add, compact. What a group has to say goes to places that belong to the
+//! eight or sixteen, trace the shadow rays, add, compact. What a group has to say goes to places that belong to the
 //! slot, so the order in which groups are shaded can't be seen in the picture: sorting changes no bit.
 
 use std::time::Instant;
@@ -16,11 +16,11 @@ use super::frame::Visit;
 use super::group::{Group, Outputs};
 use super::integrator::{Integrator, Path};
 use super::layers::Layers;
-use super::rows::{Hits, Packet, Paths, fill, reserve};
+use super::rows::{Hits, Packet, Paths, reserve};
+use super::shading::Shading;
 use super::sort::{Sorter, for_each_unsorted_group};
 use super::statistics::{Stage, Statistics};
 use super::trace::{self, Route};
-use super::vertex::Vertex;
 use crate::bvh::Tracer;
 use crate::compile::Scene;
 use crate::film::{
@@ -28,7 +28,6 @@ use crate::film::{
     sums::{Quad, quads},
 };
 use crate::geometry::PrimitiveId;
-use crate::material::MaterialId;
 use crate::simd::{Bits, LANES, f32x8, u32x8};
 
 /// What one thread needs to render tiles, one after the other.
@@ -206,10 +205,10 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     fn begin(&mut self, sample: u32, statistics: &mut Statistics) {
         let Self { scene, integrator, paths, out, .. } = self;
         for first in (0..paths.len as u32).step_by(LANES) {
-            let slots = u32x8::from_fn(|i| (first + i as u32).min(paths.len as u32 - 1)).to_array();
+            let slots = std::array::from_fn(|i| (first + i as u32).min(paths.len as u32 - 1));
             let count = (paths.len - first as usize).min(LANES);
             statistics.shade_lanes.add(count as u32);
-            let Packet { path, pixel, .. } = paths.packet(&slots, 0, sample);
+            let Packet::<f32x8> { path, pixel, .. } = paths.packet(&slots, 0, sample);
             integrator.begin(scene, &path, &mut Group { slots, count, pixel, out, ends: None });
         }
     }
@@ -218,7 +217,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
         let start = Instant::now();
         let Self { scene, integrator, layers, paths, hits, keys, sorter, out, sums, probe, .. } = self;
         // What the camera sees besides is said in the first round.
-        let mut layers = layers.as_mut().filter(|_| depth == 0);
+        let layers = layers.as_mut().filter(|_| depth == 0);
         let miss = scene.materials.len() as u32;
         reserve(keys, paths.len, miss);
         let keys = &mut keys[..paths.len];
@@ -234,31 +233,25 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
         if let Some(probe) = probe {
             probe.groups(keys, scene.materials.len() + 1);
         }
-        let mut ends = probe.as_deref_mut().map(|probe| &mut probe.census.ends);
+        let ends = probe.as_deref_mut().map(|probe| &mut probe.census.ends);
         let start = statistics.spend(Stage::Sort, start);
         let lanes = &mut statistics.shade_lanes;
+        let mut shading = Shading {
+            scene,
+            integrator: *integrator,
+            paths,
+            hits,
+            out,
+            layers,
+            sums,
+            ends,
+            depth,
+            sample,
+            miss,
+        };
         let group = |key: u32, slots: &[u32]| {
             lanes.add(slots.len() as u32);
-            let at = fill(slots);
-            let Packet { org, dir, path, pixel, .. } = paths.packet(&at, depth, sample);
-            let ends = ends.as_deref_mut();
-            let pixels = pixel.to_array();
-            let mut group = Group { slots: at, count: slots.len(), pixel, out, ends };
-            if key == miss {
-                integrator.miss(scene, &path, (org, dir), &mut group);
-                if let Some(layers) = &mut layers {
-                    layers.put(pixels, sums, |aovs, out| {
-                        aovs.miss(scene, &path, (org, dir), out);
-                    });
-                }
-                return;
-            }
-            let (tuv, primitive) = hits.packet(&at);
-            let vertex = Vertex::new(scene, path, (org, dir), tuv, primitive, MaterialId(key));
-            integrator.shade(scene, &vertex, &mut group);
-            if let Some(layers) = &mut layers {
-                layers.put(pixels, sums, |aovs, out| aovs.shade(scene, &vertex, out));
-            }
+            shading.group(key, slots);
         };
         if self.sort {
             sorter.for_each_group(group);

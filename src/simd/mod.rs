@@ -27,7 +27,7 @@ pub use integer::u32x8;
 pub use mask::{Mask8, Mask16};
 pub use prefetch::prefetch;
 pub use real::{Bits, Mask, Real};
-pub use sixteen::{ONE_REGISTER, f32x16, u32x16};
+pub use sixteen::{Eights, MOST, ONE_REGISTER, f32x16, u32x16};
 pub use sort::sort_descending;
 pub use vector::{Vec3x8, Vec3x16, Vector3, vector3};
 

@@ -20,6 +20,39 @@ pub struct u32x16(wide::u32x16);
 /// and had better see the halves one after the other.
 pub const ONE_REGISTER: bool = cfg!(all(target_arch = "x86_64", target_feature = "avx512f"));
 
+/// Most lanes in which anything is shaded: as many as one register has, and eight at least.
+pub const MOST: usize = if ONE_REGISTER { 16 } else { 8 };
+
+/// Lanes that come in eights.
+pub trait Eights: Real {
+    /// Lanes 8i to 8i + 7.
+    fn eight(&self, i: usize) -> f32x8;
+    /// The same of integers.
+    fn eight_bits(bits: &Self::Bits, i: usize) -> u32x8;
+}
+
+impl Eights for f32x8 {
+    #[inline(always)]
+    fn eight(&self, _: usize) -> f32x8 {
+        *self
+    }
+    #[inline(always)]
+    fn eight_bits(bits: &u32x8, _: usize) -> u32x8 {
+        *bits
+    }
+}
+
+impl Eights for f32x16 {
+    #[inline(always)]
+    fn eight(&self, i: usize) -> f32x8 {
+        self.half(i)
+    }
+    #[inline(always)]
+    fn eight_bits(bits: &u32x16, i: usize) -> u32x8 {
+        bits.half(i)
+    }
+}
+
 impl f32x16 {
     /// Lane `i` is `lanes[i]`.
     #[inline]

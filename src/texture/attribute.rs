@@ -11,7 +11,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::Coordinates;
-use crate::simd::{Bits, Real, Vector3};
+use crate::simd::{Bits, MOST, Real, Vector3};
 
 /// One attribute of every mesh that has it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -48,7 +48,7 @@ impl MeshAttribute {
     /// The value where each lane looks it up, 0 off meshes that have it.
     #[inline]
     pub(super) fn fetch<R: Real>(&self, at: Coordinates<R>) -> Vector3<R> {
-        let mut corners = [[Vec3::ZERO; 3]; 8];
+        let mut corners = [[Vec3::ZERO; 3]; MOST];
         for (i, corners) in corners[..R::LANES].iter_mut().enumerate() {
             if let Some(Some(column)) = self.columns.get(at.mesh.lane(i) as usize) {
                 *corners = column.corners(at.face.lane(i));

@@ -3,7 +3,7 @@
 //! Texel (i, j) has its centre at ((i + ½)/w, (j + ½)/h), row 0 at v = 0. Texels are fetched lane by
 //! lane; the interpolation is done in lanes.
 
-use crate::simd::{Real, Vector3, vector3};
+use crate::simd::{MOST, Real, Vector3, vector3};
 
 /// How the texels about a point are combined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,7 +75,7 @@ impl Bitmap {
 
     #[inline]
     fn gather<R: Real>(&self, x: R, y: R) -> Vector3<R> {
-        let mut lanes = [[0.0; 3]; 8];
+        let mut lanes = [[0.0; 3]; MOST];
         for (i, lane) in lanes[..R::LANES].iter_mut().enumerate() {
             let (column, row) = (self.wrap(x.lane(i), self.width), self.wrap(y.lane(i), self.height));
             *lane = self.texels[row * self.width as usize + column];

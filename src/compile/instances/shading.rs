@@ -12,7 +12,7 @@ use crate::geometry::{AffineLanes, PrimitiveId};
 use crate::light::LightId;
 use crate::material::MaterialId;
 use crate::math::Frame;
-use crate::simd::{Bits, Mask, Real, Vector3};
+use crate::simd::{Bits, MOST, Mask, Real, Vector3};
 
 /// What rays met: (t, u, v) and the primitive.
 pub(in crate::compile) type Met<R> = ((R, R, R), <R as Real>::Bits);
@@ -104,7 +104,7 @@ impl Surfaces {
         use crate::compile::primitives::Primitive;
         use crate::geometry::{RayLanes, Triangle, TriangleLanes};
         let nothing = Triangle::new(glam::Vec3::ZERO, glam::Vec3::ZERO, glam::Vec3::ZERO);
-        let mut triangles = [nothing; 8];
+        let mut triangles = [nothing; MOST];
         let mut there = 0;
         for (i, triangle) in triangles[..R::LANES].iter_mut().enumerate() {
             if let Primitive::Triangle(found) = self.primitive(primitive.lane(i)) {
