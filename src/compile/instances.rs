@@ -64,8 +64,9 @@ impl Group {
         }
         let shapes::Shapes { surfaces, references, degenerate, .. } =
             shapes::compile(&group.shapes, named, &mut vec![])?;
-        let bvh = Bvh::build_with(references, quality);
-        let primitives = Primitives::new(bvh.slots(), Instances::default(), |id| surfaces.primitive(id));
+        let mut bvh = Bvh::build_with(references, quality);
+        let slots = bvh.take_slots();
+        let primitives = Primitives::new(slots, Instances::default(), |id| surfaces.primitive(id));
         Ok(Self { surfaces, primitives, bvh, degenerate })
     }
 }
@@ -108,8 +109,8 @@ impl Instances {
     }
 
     /// Puts instances into slots, as the tree assigned them to numbers of primitives.
-    pub(super) fn fill(&mut self, slots: impl Iterator<Item = u32>) {
-        self.slots.extend(slots);
+    pub(super) fn fill(&mut self, slots: &[u32]) {
+        self.slots = slots.to_vec();
     }
 
     /// Triangles without area, group by group.

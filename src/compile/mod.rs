@@ -185,8 +185,8 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
     let light_choice = lights::choice(&lights, 0.5 * extent.length());
 
     let start = Instant::now();
-    let bvh = Bvh::build_with(references, quality);
-    let primitives = Primitives::new(bvh.slots(), instances, |id| match id < first {
+    let mut bvh = Bvh::build_with(references, quality);
+    let primitives = Primitives::new(bvh.take_slots(), instances, |id| match id < first {
         true => surfaces.primitive(id),
         false => Primitive::Instance,
     });
