@@ -11,6 +11,9 @@ use crate::scene::{Geometry, Instance, Mesh, SceneDescription, Shape};
 pub struct Needs {
     /// The description: meshes, shapes and instances.
     pub meshes: u64,
+    /// What the system has back of that before the tree is built, if the description is given away
+    /// ([`compile_owned`](super::compile_owned)): large pieces; the allocator keeps others for what comes next.
+    pub returned: u64,
     /// Pictures and tables of the description, and the texels that are made of them.
     pub textures: u64,
     /// What shading reads of surfaces.
@@ -116,6 +119,7 @@ pub fn needs(description: &SceneDescription, quality: Quality) -> Needs {
     let sky_sums = resources.environments.iter().map(texels).sum::<u64>() / 3;
     let pictures = || resources.textures.iter().chain(&resources.environments);
     Needs {
+        returned: resources.meshes.iter().copied().map(returned).sum(),
         meshes: resources.meshes.iter().copied().map(mesh_bytes).sum::<u64>()
             + shapes * size_of::<Shape>() as u64
             + description.instances.len() as u64 * (size_of::<Instance>() as u64 + TEXT + READING),
@@ -140,6 +144,20 @@ fn mesh_bytes(mesh: &Mesh) -> u64 {
         + corners * size_of_val(triangles.as_slice())
         + values;
     bytes as u64
+}
+
+/// Allocators have pieces that are at least so large from the system, one by one.
+const LARGE: u64 = 32 << 20;
+
+fn returned(mesh: &Mesh) -> u64 {
+    let Mesh { positions, normals, uvs, triangles, .. } = mesh;
+    let pieces = [
+        size_of_val(positions.as_slice()),
+        size_of_val(normals.as_slice()),
+        size_of_val(uvs.as_slice()),
+        size_of_val(triangles.as_slice()),
+    ];
+    pieces.into_iter().map(|piece| piece as u64).filter(|&piece| piece >= LARGE).sum()
 }
 
 fn picture_bytes(picture: &Picture) -> u64 {

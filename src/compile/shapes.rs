@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::{
     CompileError, MAX_PRIMITIVES, References,
-    attributes::{self, AttributedMeshes},
+    attributes::{self, Numbers},
     canonical,
     mesh::{self, Interpolated},
     primitives::{CANONICAL, Primitive, SPHERE, TRIANGLE},
@@ -22,7 +22,8 @@ use crate::simd::{Real, Vector3};
 pub(super) struct Named<'a> {
     /// By place in the description: which material, and whether it is different at other (u, v).
     pub(super) materials: &'a [(MaterialId, bool)],
-    pub(super) meshes: &'a AttributedMeshes,
+    /// Of meshes with attributes.
+    pub(super) meshes: &'a Numbers,
     /// Place of the shape whose irradiance is measured.
     pub(super) metered: Option<u32>,
 }
@@ -73,16 +74,17 @@ impl Metered {
     }
 }
 
-/// Compiles the shapes, and adds the area lights to `lights`.
+/// Compiles the shapes, and adds the area lights to `lights`. A mesh that nobody else holds is given back as soon as
+/// it is in columns.
 pub(super) fn compile(
-    shapes: &[Shape],
+    shapes: Vec<Shape>,
     named: &Named,
     lights: &mut Vec<Light>,
 ) -> Result<Shapes, CompileError> {
     let mut all =
         Shapes { surfaces: Surfaces::default(), references: vec![], degenerate: vec![], metered: None };
-    all.reserve(shapes);
-    for (shape, place) in shapes.iter().zip(0..) {
+    all.reserve(&shapes);
+    for (shape, place) in shapes.into_iter().zip(0..) {
         let count = all.surfaces.shape_of.len() as u64 + primitive_count(&shape.geometry);
         if count > MAX_PRIMITIVES {
             return Err(CompileError::TooManyPrimitives(count));
@@ -119,17 +121,21 @@ impl Shapes {
 
     fn add(
         &mut self,
-        shape: &Shape,
+        shape: Shape,
         named: &Named,
         metered: bool,
         lights: &mut Vec<Light>,
     ) -> Result<(), CompileError> {
         let to_world = &shape.to_world;
+        let mesh = match &shape.geometry {
+            Geometry::Mesh { mesh, .. } => named.meshes.of(mesh),
+            _ => attributes::NONE,
+        };
         let first = self.surfaces.shape_of.len() as u32;
         let references = self.references.len();
         let (material, varies) = named.materials[shape.material.0 as usize];
         let is_drawn_from = metered || shape.radiance.is_some();
-        let (class, first_in_class, emitting) = match &shape.geometry {
+        let (class, first_in_class, emitting) = match shape.geometry {
             Geometry::Rectangle => {
                 let add = |all: &mut Surfaces| mesh::add_rectangle(all, to_world);
                 self.add_triangles(is_drawn_from, add, Emitting::quadrilateral)
@@ -139,11 +145,12 @@ impl Shapes {
                 self.add_triangles(is_drawn_from, add, Emitting::triangles)
             }
             Geometry::Mesh { mesh, face_normals } => {
-                let add = |all: &mut Surfaces| mesh::add_mesh(all, mesh, to_world, *face_normals);
+                // The mesh is the closure's, and gone before there are references.
+                let add = move |all: &mut Surfaces| mesh::add_mesh(all, &mesh, to_world, face_normals);
                 self.add_triangles(is_drawn_from, add, Emitting::triangles)
             }
             Geometry::Sphere { center, radius } => {
-                let row = canonical::sphere(to_world, *center, *radius);
+                let row = canonical::sphere(to_world, center, radius);
                 self.refer(row.sphere.bounds(), SPHERE);
                 self.surfaces.spheres.push(row);
                 (
@@ -154,14 +161,14 @@ impl Shapes {
             }
             Geometry::Disk => self.add_canonical(canonical::disk(to_world)),
             Geometry::Cylinder { p0, p1, radius } => {
-                self.add_canonical(canonical::cylinder(to_world, *p0, *p1, *radius))
+                self.add_canonical(canonical::cylinder(to_world, p0, p1, radius))
             }
         };
         let bounds = self.references[references..].iter().fold(Aabb::EMPTY, |b, r| b.union(r.bounds));
         // Extents are squared in areas; half the exponent range is the end of it.
         let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
         if self.references.len() > references && !(reach.is_finite() && reach < 1e18) {
-            return Err(CompileError::OutOfRange { shape: shape.name.clone() });
+            return Err(CompileError::OutOfRange { shape: shape.name });
         }
         let side = if shape.flip_normals { -1.0 } else { 1.0 };
         let extent = emitter_extent(&emitting);
@@ -174,10 +181,6 @@ impl Shapes {
                 LightId(lights.len() as u32 - 1)
             }
             _ => LightId::NONE,
-        };
-        let mesh = match &shape.geometry {
-            Geometry::Mesh { mesh, .. } => named.meshes.number(mesh),
-            _ => attributes::NONE,
         };
         self.surfaces.attributed |= mesh != attributes::NONE;
         self.surfaces.shapes.push(ShapeRow {

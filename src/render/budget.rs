@@ -56,15 +56,17 @@ impl Budget {
         }
     }
 
-    /// The most that is there at one time: a tree is finished before a film is begun.
+    /// The most that is there at one time, if the description is given away: meshes are in columns before a tree is
+    /// built, and that is finished before a film is begun.
     pub fn peak(&self) -> u64 {
-        let Needs { meshes, textures, columns, tree, building } = self.scene;
-        self.program + meshes + textures + columns + tree + building.max(self.film + self.wavefronts)
+        let Needs { meshes, returned, textures, columns, tree, building } = self.scene;
+        let kept = self.program + meshes - returned + textures + columns;
+        kept + returned.max(tree + building.max(self.film + self.wavefronts))
     }
 
     /// The parts, named, in the order in which they are taken.
     pub fn parts(&self) -> [(&'static str, u64); 8] {
-        let Needs { meshes, textures, columns, tree, building } = self.scene;
+        let Needs { meshes, textures, columns, tree, building, .. } = self.scene;
         [
             ("program", self.program),
             ("meshes", meshes),
