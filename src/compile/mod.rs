@@ -14,6 +14,7 @@ mod shapes;
 mod streams;
 mod surfaces;
 mod tree;
+mod vertices;
 
 use std::{
     mem,

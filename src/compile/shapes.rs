@@ -8,7 +8,7 @@ use super::{
     canonical,
     mesh::{self, Interpolated},
     primitives::{CANONICAL, Primitive, SPHERE, TRIANGLE},
-    surfaces::{CanonicalRow, Class, ShapeRow, Surfaces},
+    surfaces::{CanonicalRow, Class, Interpolate, ShapeRow, Surfaces},
 };
 use crate::bvh::Reference;
 use crate::geometry::{Aabb, CanonicalKind, Triangle};
@@ -113,7 +113,12 @@ impl Shapes {
             })
         };
         let triangles = meshes().map(|mesh| mesh.triangles.len()).sum();
-        self.surfaces.vertices.reserve_exact(meshes().map(|mesh| mesh.positions.len()).sum());
+        let vertices = |mapped| {
+            let column = meshes().filter(move |mesh| mesh.uvs.is_empty() != mapped);
+            column.map(|mesh| mesh.positions.len()).sum()
+        };
+        self.surfaces.vertices.plain.reserve_exact(vertices(false));
+        self.surfaces.vertices.mapped.reserve_exact(vertices(true));
         self.surfaces.triangles.reserve_exact(triangles);
         self.surfaces.shape_of.reserve_exact(triangles);
         self.references.reserve_exact(triangles);
@@ -218,7 +223,7 @@ impl Shapes {
         let Interpolated { uv, normal } = add(&mut self.surfaces);
         let (mut emitting, mut degenerate) = (Vec::new(), 0);
         for index in first..self.surfaces.triangles.len() {
-            let triangle = self.surfaces.triangle(index);
+            let triangle = self.surfaces.triangle(index, uv);
             if triangle.e1().cross(triangle.e2()) == Vec3::ZERO {
                 // Its determinant would be noise: a hit where there is nothing.
                 self.number();
@@ -263,8 +268,8 @@ fn emitter_extent(emitting: &Emitting) -> Vec3 {
 }
 
 impl Surfaces {
-    fn triangle(&self, index: usize) -> Triangle {
-        let [v0, v1, v2] = self.triangles[index].map(|i| self.vertices[i as usize].position);
+    fn triangle(&self, index: usize, uv: Interpolate) -> Triangle {
+        let [v0, v1, v2] = self.vertices.positions(uv, self.triangles[index]);
         Triangle::new(v0, v1, v2)
     }
 
@@ -272,8 +277,10 @@ impl Surfaces {
     pub(super) fn corners(&self, id: u32) -> Option<[Vec3; 3]> {
         let shape = self.shape(id);
         let index = (id - shape.first + shape.first_in_class) as usize;
-        matches!(shape.class, Class::Triangles { .. })
-            .then(|| self.triangles[index].map(|i| self.vertices[i as usize].position))
+        match shape.class {
+            Class::Triangles { uv, .. } => Some(self.vertices.positions(uv, self.triangles[index])),
+            Class::Sphere { .. } | Class::Canonical => None,
+        }
     }
 
     /// What the kernels need of a primitive.
@@ -281,7 +288,7 @@ impl Surfaces {
         let shape = self.shape(id);
         let index = (id - shape.first + shape.first_in_class) as usize;
         match shape.class {
-            Class::Triangles { .. } => Primitive::Triangle(self.triangle(index)),
+            Class::Triangles { uv, .. } => Primitive::Triangle(self.triangle(index, uv)),
             Class::Sphere { .. } => Primitive::Sphere(self.spheres[index].sphere),
             Class::Canonical => Primitive::Canonical(self.canonicals[index].surface),
         }

@@ -177,6 +177,16 @@ mod tests {
     }
 
     #[test]
+    fn large_meshes_are_gone_before_a_tree_is_there() {
+        let scene =
+            Needs { meshes: 50, returned: 40, columns: 30, tree: 20, building: 5, ..Needs::default() };
+        let budget = Budget { scene, ..Budget::default() };
+        assert_eq!(budget.peak(), 50 + 30, "meshes and columns");
+        let large = Budget { scene: Needs { tree: 100, ..scene }, ..budget };
+        assert_eq!(large.peak(), 10 + 30 + 100 + 5, "columns and the tree");
+    }
+
+    #[test]
     fn lights_cost_connections_where_all_are_asked() {
         let light = crate::scene::Emitter::Constant { radiance: glam::Vec3::ONE };
         let mut description = SceneDescription { emitters: vec![light; 1000], ..Default::default() };
