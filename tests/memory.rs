@@ -116,6 +116,18 @@ fn what_is_expected_is_close_to_what_is_taken() {
     assert!(complaints.is_empty(), "{complaints:#?}");
 }
 
+/// Three vertices a triangle, which nobody shares: the most that a mesh without texture coordinates can bring.
+#[test]
+fn a_tree_and_all_that_it_is_made_of_take_less_than_three_times_the_tree() {
+    let output = packlight(&["info", "gen:soup:1M", "--json"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let info: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let bytes = |key| info[key].as_f64().expect("bytes");
+    let share = bytes("peak_memory_bytes") / bytes("bvh_bytes");
+    println!("{share:.2} times the tree");
+    assert!(share < 3.0, "{share:.2} times the tree");
+}
+
 #[test]
 fn a_scene_beyond_the_limit_is_refused_before_its_tree_is_built() {
     let picture = path(&folder("memory/refused"), "a.exr");

@@ -227,4 +227,9 @@ impl Bvh {
     pub fn slots(&self) -> &[u32] {
         &self.slots
     }
+
+    /// Gives the slots away, as tracing needs no numbers of references: from then on there are none.
+    pub(crate) fn take_slots(&mut self) -> Vec<u32> {
+        std::mem::take(&mut self.slots)
+    }
 }

@@ -18,7 +18,7 @@ use super::{
     way::WayName,
 };
 use crate::{
-    compile::{Scene, compile_with},
+    compile::{Scene, compile_owned},
     geometry::ray_file::{RayFile, encode},
     load::{Loaded, load_mesh},
     render::{Query, RayClass, measure, ray_classes},
@@ -100,7 +100,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn bench(arguments: &Arguments) -> Result<(), Failure> {
     // Before the scene: a slip in the name of a file should not cost the time to build a tree.
     let file = arguments.read_rays()?;
-    let scene = compile_with(&arguments.describe()?, arguments.quality.quality())?;
+    let scene = compile_owned(arguments.describe()?, arguments.quality.quality())?;
     let (classes, invalid) = match file {
         Some((class, invalid)) => (vec![class], invalid),
         None => (ray_classes(&scene), 0),

@@ -17,10 +17,10 @@ use super::{
     source::{Source, warn_of_degenerate},
 };
 use crate::{
-    compile::{Summary, TreeShape, compile_with},
+    compile::{Summary, TreeShape, compile_owned},
     load::Loaded,
     render::Conditions,
-    scene::{Integrator, Projection, SceneDescription},
+    scene::{Integrator, Projection, SceneDescription, Sensor},
     simd::cpu,
 };
 
@@ -51,12 +51,36 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let quality = arguments.quality.quality();
     let conditions = Conditions { quality, threads: rayon::current_num_threads(), keeps_sums: false };
     let expected = Expected::new(&description, &conditions);
-    let compiled = compile_with(&description, quality)?;
+    let described = Described::new(&description);
+    let compiled = compile_owned(description, quality)?;
     warn_of_degenerate(&origins, &compiled);
     let scene = arguments.source.path.display().to_string();
     let compiled = (compiled.summary(), compiled.tree_shape());
-    let info = Info::new(scene, &description, compiled, &expected, load_time);
+    let info = Info::new(scene, described, compiled, &expected, load_time);
     if arguments.json { console::print_json(&info) } else { console::print(&info.to_string()) }
+}
+
+/// What is told of a description, which does not outlive its compilation.
+struct Described {
+    digest: String,
+    shapes: usize,
+    material_kinds: BTreeMap<String, u64>,
+    emitter_kinds: BTreeMap<String, u64>,
+    sensor: Sensor,
+    integrator: Integrator,
+}
+
+impl Described {
+    fn new(description: &SceneDescription) -> Self {
+        Self {
+            digest: format!("{:016x}", description.fingerprint()),
+            shapes: description.shapes.len(),
+            material_kinds: kinds::kinds(&description.materials),
+            emitter_kinds: kinds::kinds(&description.emitters),
+            sensor: description.sensor.clone(),
+            integrator: description.integrator.clone(),
+        }
+    }
 }
 
 /// Field names are the keys of `--json`; units are in the names.
@@ -115,12 +139,12 @@ struct Info {
 impl Info {
     fn new(
         scene: String,
-        description: &SceneDescription,
+        described: Described,
         (summary, tree): (Summary, TreeShape),
         expected: &Expected,
         load_time: Duration,
     ) -> Self {
-        let sensor = &description.sensor;
+        let Described { digest, shapes, material_kinds, emitter_kinds, sensor, integrator } = described;
         let (projection, x_fov_degrees) = match sensor.projection {
             Projection::Perspective { x_fov } => ("perspective", Some(x_fov.to_degrees())),
             Projection::ThinLens { x_fov, .. } => ("thinlens", Some(x_fov.to_degrees())),
@@ -129,10 +153,10 @@ impl Info {
         };
         Self {
             scene,
-            digest: format!("{:016x}", description.fingerprint()),
-            shapes: description.shapes.len(),
-            material_kinds: kinds::kinds(&description.materials),
-            emitter_kinds: kinds::kinds(&description.emitters),
+            digest,
+            shapes,
+            material_kinds,
+            emitter_kinds,
             bvh_depth: tree.depth,
             bvh_node_cost: tree.node_cost,
             bvh_primitive_cost: tree.primitive_cost,
@@ -162,8 +186,8 @@ impl Info {
             x_fov_degrees,
             position: sensor.to_world.translation.to_array(),
             looking: sensor.to_world.matrix3.z_axis.normalize_or_zero().to_array(),
-            integrator: IntegratorName::from(&description.integrator).to_string(),
-            max_depth: match description.integrator {
+            integrator: IntegratorName::from(&integrator).to_string(),
+            max_depth: match integrator {
                 Integrator::Path { max_depth, .. } | Integrator::Irradiance { max_depth, .. } => max_depth,
                 Integrator::Whitted { max_depth } => Some(max_depth),
                 Integrator::Direct { .. } | Integrator::AmbientOcclusion { .. } | Integrator::Aov { .. } => {
@@ -269,7 +293,13 @@ mod tests {
         let conditions = Conditions { quality: summary.quality, threads: 2, keeps_sums: false };
         let expected = Expected::new(&description, &conditions);
         let compiled = (summary, TreeShape::default());
-        Info::new("bunny.xml".into(), &description, compiled, &expected, Duration::from_millis(5))
+        Info::new(
+            "bunny.xml".into(),
+            Described::new(&description),
+            compiled,
+            &expected,
+            Duration::from_millis(5),
+        )
     }
 
     #[test]

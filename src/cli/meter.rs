@@ -17,7 +17,7 @@ use super::{
     threads::ThreadsOption,
 };
 use crate::{
-    compile::compile_with,
+    compile::compile_owned,
     load::Loaded,
     render::{Conditions, Receiver, Settings, meter},
 };
@@ -81,7 +81,7 @@ fn measure(arguments: &Arguments) -> Result<Reading, Failure> {
     let quality = arguments.quality.quality();
     let threads = rayon::current_num_threads();
     arguments.memory.check(&description, &Conditions { quality, threads, keeps_sums: false })?;
-    let scene = compile_with(&description, quality)?;
+    let scene = compile_owned(description, quality)?;
     let point = arguments.at.zip(arguments.normal);
     let receiver = match point {
         Some((position, normal)) => Receiver::Point { position, normal },

@@ -34,7 +34,7 @@ use super::{
     way::RouteName,
 };
 use crate::{
-    compile::compile_with,
+    compile::compile_owned,
     load::Loaded,
     picture::Format,
     render::{self, Coverage, Settings, Watch},
@@ -230,7 +230,7 @@ fn numbers(arguments: &Arguments, pixel: [u32; 2]) -> Result<Replay, Failure> {
         let message = format!("--pixel is outside of the picture, which has {width} x {height} pixels");
         return Err(Failure::usage("render", ErrorKind::ValueValidation, message));
     }
-    let scene = compile_with(&description, arguments.quality.quality())?;
+    let scene = compile_owned(description, arguments.quality.quality())?;
     let name = arguments.source.path.display().to_string();
     Ok(Replay::new(&scene, name, &arguments.settings(), pixel, arguments.sample))
 }
@@ -246,10 +246,10 @@ fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage),
     let Planned { loaded: Loaded { description, origins, .. }, load_time, plan, memory } =
         planned(arguments, output)?;
     let denoiser = arguments.denoise.then(denoised::load).transpose()?;
-    let scene = compile_with(&description, arguments.quality.quality())?;
+    let facts = metadata::facts(&description);
+    let scene = compile_owned(description, arguments.quality.quality())?;
     warn_of_degenerate(&origins, &scene);
     let settings = arguments.settings();
-    let facts = metadata::facts(&description);
     let file = arguments.source.path.file_name().unwrap_or_default().to_string_lossy();
     let name = Name { scene: &file, facts: &facts };
     let frame = arguments.keep.begin(&scene, plan, &name, arguments.quiet || arguments.json)?;
@@ -267,10 +267,10 @@ fn picture(arguments: &Arguments, output: &Output) -> Result<(Report, Coverage),
     let ended = Ended { arguments, output, scene: &scene, frame: &frame, name: &name, denoiser };
     let (statistics, denoised) = ended.save()?;
     let report = Report::from(Sources {
-        scene: arguments.source.path.display().to_string(),
+        name: arguments.source.path.display().to_string(),
         output: output.path.display().to_string(),
         options: arguments.options(),
-        description: &description,
+        scene: &scene,
         coverage,
         continued_by: arguments.continued_by(output).filter(|_| !signals::wished()),
         settings,

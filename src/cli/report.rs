@@ -10,9 +10,8 @@ use super::{
     render::{denoised::Denoised, lesson::Lesson},
 };
 use crate::{
-    compile::Summary,
+    compile::{Scene, Summary},
     render::{Backend, Coverage, Settings, Statistics},
-    scene::SceneDescription,
     simd::cpu,
 };
 
@@ -94,11 +93,11 @@ struct Sample {
 
 /// What the report is made of.
 pub(super) struct Sources<'a> {
-    pub(super) scene: String,
+    pub(super) name: String,
     pub(super) output: String,
     /// What decides the picture besides the scene, as typed.
     pub(super) options: String,
-    pub(super) description: &'a SceneDescription,
+    pub(super) scene: &'a Scene,
     pub(super) coverage: Coverage,
     /// The file from which it could go on, if that is to be said here.
     pub(super) continued_by: Option<String>,
@@ -115,20 +114,20 @@ pub(super) struct Sources<'a> {
 
 impl From<Sources<'_>> for Report {
     fn from(from: Sources<'_>) -> Self {
-        let Sources { description, summary, statistics, .. } = from;
+        let Sources { scene, summary, statistics, .. } = from;
         let rays = statistics.camera_rays + statistics.bounce_rays + statistics.shadow_rays;
         let [trace, sort, shade, add] = statistics.profile.shares();
         Self {
-            scene: from.scene,
+            scene: from.name,
             output: from.output,
-            width: description.sensor.film.window().width,
-            height: description.sensor.film.window().height,
-            samples_per_pixel: description.sensor.sampler.sample_count,
+            width: scene.film.window().width,
+            height: scene.film.window().height,
+            samples_per_pixel: scene.sampler.sample_count,
             samples_least: from.coverage.least,
             samples_most: from.coverage.most,
             complete: from.coverage.complete,
             continued_by: from.continued_by,
-            integrator: IntegratorName::from(&description.integrator).to_string(),
+            integrator: IntegratorName::from(&scene.integrator).to_string(),
             backend: match from.settings.backend {
                 Backend::Packet => "packet",
                 Backend::Scalar => "scalar",
@@ -278,14 +277,14 @@ impl fmt::Display for Report {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render;
+    use crate::{compile::compile, render, scene::SceneDescription};
 
     fn report(statistics: Statistics) -> Report {
         Report::from(Sources {
-            scene: "box.xml".into(),
+            name: "box.xml".into(),
             output: "box.exr".into(),
             options: " --seed 9".into(),
-            description: &SceneDescription::default(),
+            scene: &compile(&SceneDescription::default()).expect("it compiles"),
             coverage: Coverage { least: 4, most: 4, complete: true },
             continued_by: Some("kept.exr".into()),
             settings: Settings::default(),

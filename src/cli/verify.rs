@@ -13,7 +13,7 @@ use super::{
     threads::ThreadsOption,
 };
 use crate::{
-    compile::{Scene, compile_with},
+    compile::{Scene, compile_owned},
     geometry::Ray32,
     load::Loaded,
     render::Query,
@@ -96,7 +96,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let file = arguments.rays.as_deref().map(ray_file::read).transpose()?;
     let findings = arguments.threads.pool()?.install(|| {
         let (Loaded { description, .. }, _) = arguments.source.load()?;
-        let scene = compile_with(&description, arguments.quality.quality())?;
+        let scene = compile_owned(description, arguments.quality.quality())?;
         let classes = match &file {
             Some(file) => vec![Class { name: "file", query: Query::Closest, rays: file.rays.clone() }],
             None => classes(&scene, arguments.most as usize),

@@ -2,7 +2,7 @@
 
 use std::{collections::HashMap, sync::Arc};
 
-use crate::scene::{Geometry, Mesh, Per, SceneDescription};
+use crate::scene::{Geometry, Mesh, Per, Shape};
 use crate::texture::{Column, MeshAttribute};
 
 /// The number of a surface that is no mesh with attributes.
@@ -18,30 +18,35 @@ struct Attributed {
 #[derive(Default)]
 pub(super) struct AttributedMeshes {
     meshes: Vec<Attributed>,
-    numbers: HashMap<*const Mesh, u32>,
+    pub(super) numbers: Numbers,
+}
+
+/// Meshes by where they are. A mesh may be given back meanwhile: as none is made, nobody else comes to be where it was.
+#[derive(Default)]
+pub(super) struct Numbers(HashMap<*const Mesh, u32>);
+
+impl Numbers {
+    /// Of a mesh, or [`NONE`].
+    pub(super) fn of(&self, mesh: &Arc<Mesh>) -> u32 {
+        self.0.get(&Arc::as_ptr(mesh)).copied().unwrap_or(NONE)
+    }
 }
 
 impl AttributedMeshes {
-    /// Those of the scene and of its groups.
-    pub(super) fn new(description: &SceneDescription) -> Self {
+    /// Those of shapes.
+    pub(super) fn new<'a>(shapes: impl Iterator<Item = &'a Shape>) -> Self {
         let mut all = Self::default();
-        let grouped = description.groups.iter().flat_map(|group| &group.shapes);
-        for shape in description.shapes.iter().chain(grouped) {
+        for shape in shapes {
             if let Geometry::Mesh { mesh, .. } = &shape.geometry
                 && !mesh.attributes.is_empty()
-                && !all.numbers.contains_key(&Arc::as_ptr(mesh))
+                && !all.numbers.0.contains_key(&Arc::as_ptr(mesh))
             {
-                all.numbers.insert(Arc::as_ptr(mesh), all.meshes.len() as u32);
+                all.numbers.0.insert(Arc::as_ptr(mesh), all.meshes.len() as u32);
                 let corners = mesh.triangles.as_slice().into();
                 all.meshes.push(Attributed { mesh: Arc::clone(mesh), corners });
             }
         }
         all
-    }
-
-    /// Of a mesh, or [`NONE`].
-    pub(super) fn number(&self, mesh: &Arc<Mesh>) -> u32 {
-        self.numbers.get(&Arc::as_ptr(mesh)).copied().unwrap_or(NONE)
     }
 
     /// The attribute of a name, times `scale`, of all meshes.

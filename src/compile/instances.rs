@@ -21,7 +21,7 @@ use super::{
 };
 use crate::bvh::{Bvh, Hitx8, Quality, Reference, Traversal};
 use crate::geometry::{Aabb, Hit, Placement, PrimitiveId, Ray, RayLanes, Rayx8};
-use crate::scene::{GroupIndex, SceneDescription, ShapeGroup};
+use crate::scene::{GroupIndex, Instance, Shape, ShapeGroup};
 use crate::simd::{Bits, Mask8, Real, f32x8, u32x8};
 
 /// A group in its own space, with its own numbers.
@@ -58,14 +58,15 @@ thread_local! {
 
 impl Group {
     /// Compiles the shapes of a group, and builds its tree.
-    fn new(group: &ShapeGroup, named: &Named, quality: Quality) -> Result<Self, CompileError> {
-        if let Some(shape) = group.shapes.iter().find(|shape| shape.radiance.is_some()) {
+    fn new(shapes: Vec<Shape>, named: &Named, quality: Quality) -> Result<Self, CompileError> {
+        if let Some(shape) = shapes.iter().find(|shape| shape.radiance.is_some()) {
             return Err(CompileError::EmitterInGroup { shape: shape.name.clone() });
         }
         let shapes::Shapes { surfaces, references, degenerate, .. } =
-            shapes::compile(&group.shapes, named, &mut vec![])?;
-        let bvh = Bvh::build_with(references, quality);
-        let primitives = Primitives::new(bvh.slots(), Instances::default(), |id| surfaces.primitive(id));
+            shapes::compile(shapes, named, &mut vec![])?;
+        let mut bvh = Bvh::build_with(references, quality);
+        let slots = bvh.take_slots();
+        let primitives = Primitives::new(slots, Instances::default(), |id| surfaces.primitive(id));
         Ok(Self { surfaces, primitives, bvh, degenerate })
     }
 }
@@ -74,20 +75,20 @@ impl Instances {
     /// Compiles the groups of a description and places them. `first` is the number of the first instance;
     /// `references` receives those that can be hit.
     pub(super) fn new(
-        description: &SceneDescription,
+        (groups, instances): (Vec<ShapeGroup>, &[Instance]),
         named: &Named,
         quality: Quality,
         first: u32,
         references: &mut References,
     ) -> Result<Self, CompileError> {
-        let SceneDescription { groups: described, instances, .. } = description;
         let named = Named { metered: None, ..*named };
-        let groups = described.iter().map(|group| Group::new(group, &named, quality));
-        let groups = groups.collect::<Result<Vec<_>, _>>()?;
+        let groups =
+            groups.into_iter().map(|group| Ok((group.name, Group::new(group.shapes, &named, quality)?)));
+        let (names, groups): (Vec<_>, Vec<_>) = groups.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
         let parts: Vec<_> = groups.iter().map(|group| placing::parts(&group.bvh)).collect();
-        let place = |instance: &crate::scene::Instance| {
+        let place = |instance: &Instance| {
             let group = instance.group.0 as usize;
-            let refusal = || CompileError::OutOfRange { shape: described[group].name.clone() };
+            let refusal = || CompileError::OutOfRange { shape: names[group].clone() };
             let placement = placing::place(&instance.to_world, &parts[group]).ok_or_else(refusal)?;
             Ok(Placed { group: instance.group.0, placement })
         };
@@ -108,8 +109,8 @@ impl Instances {
     }
 
     /// Puts instances into slots, as the tree assigned them to numbers of primitives.
-    pub(super) fn fill(&mut self, slots: impl Iterator<Item = u32>) {
-        self.slots.extend(slots);
+    pub(super) fn fill(&mut self, slots: &[u32]) {
+        self.slots = slots.to_vec();
     }
 
     /// Triangles without area, group by group.

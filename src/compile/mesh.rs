@@ -1,8 +1,13 @@
 //! Shapes made of triangles, in world space.
 
+use std::iter::repeat;
+
 use glam::{DAffine3, DMat3, DVec3, Vec2, Vec3, vec2};
 
-use super::surfaces::{Interpolate, Surfaces, Vertex};
+use super::{
+    surfaces::{Interpolate, Surfaces},
+    vertices::{Mapped, Vertex},
+};
 use crate::math::acos;
 use crate::scene::Mesh;
 
@@ -21,23 +26,40 @@ pub(super) fn add_mesh(
     to_world: &DAffine3,
     face_normals: bool,
 ) -> Interpolated {
-    let first = surfaces.vertices.len();
     let normals = normal_matrix(to_world);
     let vertex = |i: usize, p: &Vec3| {
         let position = to_world.transform_point3(p.as_dvec3()).as_vec3();
         let given = mesh.normals.get(i).filter(|_| !face_normals);
         let normal = given.map_or(Vec3::ZERO, |n| (normals * n.as_dvec3()).normalize_or_zero().as_vec3());
-        Vertex::new(position, normal, mesh.uvs.get(i).copied().unwrap_or(Vec2::ZERO))
+        Vertex { position, normal }
     };
-    surfaces.vertices.extend(mesh.positions.iter().enumerate().map(|(i, p)| vertex(i, p)));
-    if !face_normals && mesh.normals.is_empty() {
-        smooth_normals(&mut surfaces.vertices[first..], &mesh.triangles);
+    let vertices = mesh.positions.iter().enumerate().map(|(i, p)| vertex(i, p));
+    let smoothed = (!face_normals && mesh.normals.is_empty()).then_some(mesh.triangles.as_slice());
+    let uv = if mesh.uvs.is_empty() { Interpolate::Face } else { Interpolate::Vertices };
+    let first = match uv {
+        Interpolate::Face => add_vertices(&mut surfaces.vertices.plain, vertices, smoothed),
+        Interpolate::Vertices => {
+            let uvs = mesh.uvs.iter().copied().chain(repeat(Vec2::ZERO));
+            let mapped = vertices.zip(uvs).map(|(vertex, uv)| Mapped { vertex, uv });
+            add_vertices(&mut surfaces.vertices.mapped, mapped, smoothed)
+        }
+    };
+    surfaces.triangles.extend(mesh.triangles.iter().map(|t| t.map(|i| i + first)));
+    Interpolated { uv, normal: if face_normals { Interpolate::Face } else { Interpolate::Vertices } }
+}
+
+/// Adds vertices to their column, and smooth normals if they are to be had from triangles. Returns where the first is.
+fn add_vertices<V: AsRef<Vertex> + AsMut<Vertex>>(
+    column: &mut Vec<V>,
+    vertices: impl Iterator<Item = V>,
+    smoothed: Option<&[[u32; 3]]>,
+) -> u32 {
+    let first = column.len();
+    column.extend(vertices);
+    if let Some(triangles) = smoothed {
+        smooth_normals(&mut column[first..], triangles);
     }
-    surfaces.triangles.extend(mesh.triangles.iter().map(|t| t.map(|i| i + first as u32)));
-    Interpolated {
-        uv: if mesh.uvs.is_empty() { Interpolate::Face } else { Interpolate::Vertices },
-        normal: if face_normals { Interpolate::Face } else { Interpolate::Vertices },
-    }
+    first as u32
 }
 
 /// The inverse transpose: what takes normals into the world.
@@ -47,17 +69,18 @@ pub(super) fn normal_matrix(to_world: &DAffine3) -> DMat3 {
 
 /// Sums of face normals, weighted by the angle of the corner, so that how a face is cut into triangles
 /// does not matter (Thürmer & Wüthrich 1998).
-fn smooth_normals(vertices: &mut [Vertex], triangles: &[[u32; 3]]) {
+fn smooth_normals<V: AsRef<Vertex> + AsMut<Vertex>>(vertices: &mut [V], triangles: &[[u32; 3]]) {
     for corners in triangles {
-        let p = corners.map(|i| vertices[i as usize].position);
+        let p = corners.map(|i| vertices[i as usize].as_ref().position);
         let face = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
         for k in 0..3 {
             let (a, b) = (p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
             let cos = a.normalize_or_zero().dot(b.normalize_or_zero());
-            vertices[corners[k] as usize].normal += face * acos(cos);
+            vertices[corners[k] as usize].as_mut().normal += face * acos(cos);
         }
     }
     for vertex in vertices {
+        let vertex = vertex.as_mut();
         vertex.normal = vertex.normal.normalize_or_zero();
     }
 }
@@ -89,11 +112,13 @@ pub(super) fn add_cube(surfaces: &mut Surfaces, to_world: &DAffine3) -> Interpol
 fn faces(surfaces: &mut Surfaces, to_world: &DAffine3, faces: &[Face]) -> Interpolated {
     let mirrored = to_world.matrix3.determinant() < 0.0;
     for face in faces {
-        let first = surfaces.vertices.len() as u32;
+        let vertices = &mut surfaces.vertices.mapped;
+        let first = vertices.len() as u32;
         for (s, t) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)] {
             let local = face.centre + face.du * (2.0 * s - 1.0) + face.dv * (2.0 * t - 1.0);
             let position = to_world.transform_point3(local).as_vec3();
-            surfaces.vertices.push(Vertex::new(position, Vec3::ZERO, vec2(s as f32, t as f32)));
+            let vertex = Vertex { position, normal: Vec3::ZERO };
+            vertices.push(Mapped { vertex, uv: vec2(s as f32, t as f32) });
         }
         // The winding makes e₁ × e₂ the normal, in the world too.
         let agrees = (face.du.cross(face.dv).dot(face.normal) > 0.0) != mirrored;
@@ -114,7 +139,7 @@ mod tests {
             add_cube(&mut mesh, &DAffine3::from_scale(scale));
             assert_eq!(mesh.triangles.len(), 12);
             for t in &mesh.triangles {
-                let [a, b, c] = t.map(|i| mesh.vertices[i as usize].position);
+                let [a, b, c] = mesh.vertices.positions(Interpolate::Vertices, *t);
                 assert!((b - a).cross(c - a).dot(a + b + c) > 0.0);
             }
         }
@@ -129,7 +154,7 @@ mod tests {
         let wall = [[0, 4, 5], [0, 5, 1]];
         let floor = |diagonal: [[u32; 3]; 2]| -> Vec<Vec3> {
             let mut vertices: Vec<Vertex> =
-                positions.iter().map(|&p| Vertex::new(p, Vec3::ZERO, Vec2::ZERO)).collect();
+                positions.iter().map(|&position| Vertex { position, normal: Vec3::ZERO }).collect();
             smooth_normals(&mut vertices, &[wall.as_slice(), &diagonal].concat());
             vertices.iter().map(|v| v.normal).collect()
         };

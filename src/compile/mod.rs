@@ -14,8 +14,12 @@ mod shapes;
 mod streams;
 mod surfaces;
 mod tree;
+mod vertices;
 
-use std::time::{Duration, Instant};
+use std::{
+    mem,
+    time::{Duration, Instant},
+};
 
 pub use lights::envmap;
 pub use needs::{Needs, needs};
@@ -33,7 +37,9 @@ use crate::film::Filter;
 use crate::geometry::Aabb;
 use crate::light::{Light, LightChoice, LightId, Sight};
 use crate::material::MaterialTable;
-use crate::scene::{Aov, AovChannel, Film, Integrator, Projection, Sampler, SceneDescription, Sensor};
+use crate::scene::{
+    Aov, AovChannel, Film, Integrator, Projection, Sampler, SceneDescription, Sensor, Shape, ShapeGroup,
+};
 use crate::texture::TextureTable;
 use attributes::AttributedMeshes;
 use instances::Instances;
@@ -160,8 +166,30 @@ pub fn compile(description: &SceneDescription) -> Result<Scene, CompileError> {
 /// # Errors
 /// [`CompileError`].
 pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<Scene, CompileError> {
-    let meshes = AttributedMeshes::new(description);
+    // Shapes share their meshes.
+    compile_shapes(description, (description.shapes.clone(), description.groups.clone()), quality)
+}
+
+/// [`compile_with`] a description that is not needed any more: a mesh that nobody else holds is given back as soon as
+/// its triangles are in columns, before the tree is built, so that the memory for both is not taken at once.
+///
+/// # Errors
+/// [`CompileError`].
+pub fn compile_owned(mut description: SceneDescription, quality: Quality) -> Result<Scene, CompileError> {
+    let shapes = (mem::take(&mut description.shapes), mem::take(&mut description.groups));
+    compile_shapes(&description, shapes, quality)
+}
+
+/// The description is asked for all but its shapes and groups.
+fn compile_shapes(
+    description: &SceneDescription,
+    (shapes, groups): (Vec<Shape>, Vec<ShapeGroup>),
+    quality: Quality,
+) -> Result<Scene, CompileError> {
+    let grouped = groups.iter().flat_map(|group| &group.shapes);
+    let meshes = AttributedMeshes::new(shapes.iter().chain(grouped));
     let (materials, textures, material_ids) = materials::compile(&description.materials, &meshes);
+    let meshes = meshes.numbers;
     let metered = match description.sensor.projection {
         Projection::IrradianceMeter { shape } => Some(shape),
         _ => None,
@@ -169,7 +197,7 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
     let named = Named { materials: &material_ids, meshes: &meshes, metered };
     let mut lights = lights::without_surface(&description.emitters);
     let shapes::Shapes { surfaces, mut references, mut degenerate, metered } =
-        shapes::compile(&description.shapes, &named, &mut lights)?;
+        shapes::compile(shapes, &named, &mut lights)?;
     let first = surfaces.shape_of.len() as u32;
     let count = u64::from(first) + description.instances.len() as u64;
     if count > MAX_PRIMITIVES {
@@ -177,7 +205,8 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
     }
 
     let start = Instant::now();
-    let instances = Instances::new(description, &named, quality, first, &mut references)?;
+    let instances =
+        Instances::new((groups, &description.instances), &named, quality, first, &mut references)?;
     let bvh_time = start.elapsed();
 
     let bounds = references.iter().fold(Aabb::EMPTY, |bounds, reference| bounds.union(reference.bounds));
@@ -185,8 +214,8 @@ pub fn compile_with(description: &SceneDescription, quality: Quality) -> Result<
     let light_choice = lights::choice(&lights, 0.5 * extent.length());
 
     let start = Instant::now();
-    let bvh = Bvh::build_with(references, quality);
-    let primitives = Primitives::new(bvh.slots(), instances, |id| match id < first {
+    let mut bvh = Bvh::build_with(references, quality);
+    let primitives = Primitives::new(bvh.take_slots(), instances, |id| match id < first {
         true => surfaces.primitive(id),
         false => Primitive::Instance,
     });

@@ -1,7 +1,10 @@
 //! How much memory a description will need, before it is taken: counts times sizes.
 
-use super::surfaces::{CanonicalRow, ShapeRow, SphereRow, Vertex};
-use crate::bvh::{Quality, Reference};
+use super::{
+    surfaces::{CanonicalRow, ShapeRow, SphereRow},
+    vertices::{Mapped, Vertex},
+};
+use crate::bvh::Quality;
 use crate::geometry::{Canonical, Placement, Triangle};
 use crate::picture::Picture;
 use crate::scene::{Geometry, Instance, Mesh, SceneDescription, Shape};
@@ -11,13 +14,16 @@ use crate::scene::{Geometry, Instance, Mesh, SceneDescription, Shape};
 pub struct Needs {
     /// The description: meshes, shapes and instances.
     pub meshes: u64,
+    /// What the system has back of that before the tree is built, if the description is given away
+    /// ([`compile_owned`](super::compile_owned)): large pieces; the allocator keeps others for what comes next.
+    pub returned: u64,
     /// Pictures and tables of the description, and the texels that are made of them.
     pub textures: u64,
     /// What shading reads of surfaces.
     pub columns: u64,
     /// What tracing reads: nodes, primitives in leaf order, instances.
     pub tree: u64,
-    /// What is taken while a tree is built, and given back.
+    /// What is taken beyond that while a tree is built, and given back.
     pub building: u64,
 }
 
@@ -39,7 +45,10 @@ const READING: u64 = 450;
 struct Counts {
     shapes: u64,
     triangles: u64,
+    /// Vertices without texture coordinates.
     vertices: u64,
+    /// Vertices with texture coordinates.
+    mapped: u64,
     /// Triangles that shine: they are kept a second time.
     kept: u64,
     spheres: u64,
@@ -51,10 +60,13 @@ impl Counts {
     fn of(shapes: &[Shape]) -> Self {
         let mut counts = Self { shapes: shapes.len() as u64, ..Self::default() };
         for shape in shapes {
-            let (triangles, vertices) = match &shape.geometry {
-                Geometry::Mesh { mesh, .. } => (mesh.triangles.len() as u64, mesh.positions.len() as u64),
-                Geometry::Cube => (12, 24),
-                Geometry::Rectangle => (2, 4),
+            let (triangles, vertices, mapped) = match &shape.geometry {
+                Geometry::Mesh { mesh, .. } => {
+                    let (triangles, vertices) = (mesh.triangles.len() as u64, mesh.positions.len() as u64);
+                    if mesh.uvs.is_empty() { (triangles, vertices, 0) } else { (triangles, 0, vertices) }
+                }
+                Geometry::Cube => (12, 0, 24),
+                Geometry::Rectangle => (2, 0, 4),
                 Geometry::Sphere { .. } => {
                     counts.spheres += 1;
                     continue;
@@ -66,6 +78,7 @@ impl Counts {
             };
             counts.triangles += triangles;
             counts.vertices += vertices;
+            counts.mapped += mapped;
             counts.kept += if shape.radiance.is_some() { triangles } else { 0 };
         }
         counts
@@ -81,6 +94,7 @@ impl Counts {
             + self.shapes * size_of::<ShapeRow>() as u64
             + self.triangles * size_of::<[u32; 3]>() as u64
             + self.vertices * size_of::<Vertex>() as u64
+            + self.mapped * size_of::<Mapped>() as u64
             + self.kept * (size_of::<Triangle>() as u64 + normal_and_sum)
             + self.spheres * size_of::<SphereRow>() as u64
             + self.canonicals * size_of::<CanonicalRow>() as u64
@@ -94,14 +108,14 @@ impl Counts {
             + self.instances * (size_of::<Placement>() as u64 + 8)
     }
 
-    /// References, and nodes of the binary tree before it is collapsed. With the tree, 112 (a terrain) to 155 bytes (a
-    /// soup) a triangle were counted at half a million, 142 to 219 at high quality.
+    /// References and the binary tree, less what takes their place. With the tree, 72 (a terrain) to 97 bytes (a soup) a
+    /// triangle were counted at a million, 150 to 234 at high quality.
     fn building(&self, quality: Quality) -> u64 {
-        let nodes = match quality {
-            Quality::Fast | Quality::Medium => 45,
-            Quality::High => 95,
+        let beyond = match quality {
+            Quality::Fast | Quality::Medium => 20,
+            Quality::High => 135,
         };
-        self.primitives() * (size_of::<Reference>() as u64 + nodes)
+        self.primitives() * beyond
     }
 }
 
@@ -116,6 +130,7 @@ pub fn needs(description: &SceneDescription, quality: Quality) -> Needs {
     let sky_sums = resources.environments.iter().map(texels).sum::<u64>() / 3;
     let pictures = || resources.textures.iter().chain(&resources.environments);
     Needs {
+        returned: resources.meshes.iter().copied().map(returned).sum(),
         meshes: resources.meshes.iter().copied().map(mesh_bytes).sum::<u64>()
             + shapes * size_of::<Shape>() as u64
             + description.instances.len() as u64 * (size_of::<Instance>() as u64 + TEXT + READING),
@@ -140,6 +155,20 @@ fn mesh_bytes(mesh: &Mesh) -> u64 {
         + corners * size_of_val(triangles.as_slice())
         + values;
     bytes as u64
+}
+
+/// Allocators have pieces that are at least so large from the system, one by one.
+const LARGE: u64 = 32 << 20;
+
+fn returned(mesh: &Mesh) -> u64 {
+    let Mesh { positions, normals, uvs, triangles, .. } = mesh;
+    let pieces = [
+        size_of_val(positions.as_slice()),
+        size_of_val(normals.as_slice()),
+        size_of_val(uvs.as_slice()),
+        size_of_val(triangles.as_slice()),
+    ];
+    pieces.into_iter().map(|piece| piece as u64).filter(|&piece| piece >= LARGE).sum()
 }
 
 fn picture_bytes(picture: &Picture) -> u64 {

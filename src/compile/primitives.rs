@@ -85,30 +85,27 @@ impl Primitives {
     /// Lays the primitives out. `slots` holds indices into `primitives`, `u32::MAX` for padding, in blocks
     /// of one class; the index is the primitive's id.
     pub(super) fn new(
-        slots: &[u32],
+        mut slots: Vec<u32>,
         mut instances: Instances,
         primitives: impl Fn(u32) -> Primitive + Sync,
     ) -> Self {
-        let class = |block: &[u32]| primitives(block[0]).class();
-        let blocks: Vec<&[u32]> = slots.chunks(BLOCK).collect();
+        let class = |block: &[u32; BLOCK]| primitives(block[0]).class();
+        let blocks = slots.as_chunks().0;
         let (triangles, rest) = blocks.split_at(blocks.partition_point(|block| class(block) == TRIANGLE));
         let (spheres, rest) = rest.split_at(rest.partition_point(|block| class(block) == SPHERE));
         let (canonicals, placed) = rest.split_at(rest.partition_point(|block| class(block) == CANONICAL));
-        instances.fill(placed.iter().flat_map(|ids| ids.iter().copied()));
-        Self {
-            triangle_ids: slots[..triangles.len() * BLOCK].to_vec(),
-            triangles: triangles.par_iter().map(|ids| TriangleBlock::new(ids, &primitives)).collect(),
-            spheres: spheres.par_iter().map(|ids| SphereBlock::new(ids, &primitives)).collect(),
-            canonicals: canonicals
-                .iter()
-                .flat_map(|ids| ids.iter())
-                .map(|&id| match (id != u32::MAX).then(|| primitives(id)) {
-                    Some(Primitive::Canonical(surface)) => Some((surface, id)),
-                    _ => None,
-                })
-                .collect(),
-            instances,
-        }
+        instances.fill(placed.as_flattened());
+        let spheres = spheres.par_iter().map(|ids| SphereBlock::new(ids, &primitives)).collect();
+        let canonical = |&id: &u32| match (id != u32::MAX).then(|| primitives(id)) {
+            Some(Primitive::Canonical(surface)) => Some((surface, id)),
+            _ => None,
+        };
+        let canonicals = canonicals.as_flattened().iter().map(canonical).collect();
+        let triangles: Vec<_> =
+            triangles.par_iter().map(|ids| TriangleBlock::new(ids, &primitives)).collect();
+        slots.truncate(triangles.len() * BLOCK);
+        slots.shrink_to_fit();
+        Self { triangles, triangle_ids: slots, spheres, canonicals, instances }
     }
 
     /// Bytes that tracing reads, without those of instances.

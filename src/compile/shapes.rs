@@ -4,11 +4,11 @@ use glam::Vec3;
 
 use super::{
     CompileError, MAX_PRIMITIVES, References,
-    attributes::{self, AttributedMeshes},
+    attributes::{self, Numbers},
     canonical,
     mesh::{self, Interpolated},
     primitives::{CANONICAL, Primitive, SPHERE, TRIANGLE},
-    surfaces::{CanonicalRow, Class, ShapeRow, Surfaces},
+    surfaces::{CanonicalRow, Class, Interpolate, ShapeRow, Surfaces},
 };
 use crate::bvh::Reference;
 use crate::geometry::{Aabb, CanonicalKind, Triangle};
@@ -22,7 +22,8 @@ use crate::simd::{Real, Vector3};
 pub(super) struct Named<'a> {
     /// By place in the description: which material, and whether it is different at other (u, v).
     pub(super) materials: &'a [(MaterialId, bool)],
-    pub(super) meshes: &'a AttributedMeshes,
+    /// Of meshes with attributes.
+    pub(super) meshes: &'a Numbers,
     /// Place of the shape whose irradiance is measured.
     pub(super) metered: Option<u32>,
 }
@@ -73,16 +74,17 @@ impl Metered {
     }
 }
 
-/// Compiles the shapes, and adds the area lights to `lights`.
+/// Compiles the shapes, and adds the area lights to `lights`. A mesh that nobody else holds is given back as soon as
+/// it is in columns.
 pub(super) fn compile(
-    shapes: &[Shape],
+    shapes: Vec<Shape>,
     named: &Named,
     lights: &mut Vec<Light>,
 ) -> Result<Shapes, CompileError> {
     let mut all =
         Shapes { surfaces: Surfaces::default(), references: vec![], degenerate: vec![], metered: None };
-    all.reserve(shapes);
-    for (shape, place) in shapes.iter().zip(0..) {
+    all.reserve(&shapes);
+    for (shape, place) in shapes.into_iter().zip(0..) {
         let count = all.surfaces.shape_of.len() as u64 + primitive_count(&shape.geometry);
         if count > MAX_PRIMITIVES {
             return Err(CompileError::TooManyPrimitives(count));
@@ -111,7 +113,12 @@ impl Shapes {
             })
         };
         let triangles = meshes().map(|mesh| mesh.triangles.len()).sum();
-        self.surfaces.vertices.reserve_exact(meshes().map(|mesh| mesh.positions.len()).sum());
+        let vertices = |mapped| {
+            let column = meshes().filter(move |mesh| mesh.uvs.is_empty() != mapped);
+            column.map(|mesh| mesh.positions.len()).sum()
+        };
+        self.surfaces.vertices.plain.reserve_exact(vertices(false));
+        self.surfaces.vertices.mapped.reserve_exact(vertices(true));
         self.surfaces.triangles.reserve_exact(triangles);
         self.surfaces.shape_of.reserve_exact(triangles);
         self.references.reserve_exact(triangles);
@@ -119,17 +126,21 @@ impl Shapes {
 
     fn add(
         &mut self,
-        shape: &Shape,
+        shape: Shape,
         named: &Named,
         metered: bool,
         lights: &mut Vec<Light>,
     ) -> Result<(), CompileError> {
         let to_world = &shape.to_world;
+        let mesh = match &shape.geometry {
+            Geometry::Mesh { mesh, .. } => named.meshes.of(mesh),
+            _ => attributes::NONE,
+        };
         let first = self.surfaces.shape_of.len() as u32;
         let references = self.references.len();
         let (material, varies) = named.materials[shape.material.0 as usize];
         let is_drawn_from = metered || shape.radiance.is_some();
-        let (class, first_in_class, emitting) = match &shape.geometry {
+        let (class, first_in_class, emitting) = match shape.geometry {
             Geometry::Rectangle => {
                 let add = |all: &mut Surfaces| mesh::add_rectangle(all, to_world);
                 self.add_triangles(is_drawn_from, add, Emitting::quadrilateral)
@@ -139,11 +150,12 @@ impl Shapes {
                 self.add_triangles(is_drawn_from, add, Emitting::triangles)
             }
             Geometry::Mesh { mesh, face_normals } => {
-                let add = |all: &mut Surfaces| mesh::add_mesh(all, mesh, to_world, *face_normals);
+                // The mesh is the closure's, and gone before there are references.
+                let add = move |all: &mut Surfaces| mesh::add_mesh(all, &mesh, to_world, face_normals);
                 self.add_triangles(is_drawn_from, add, Emitting::triangles)
             }
             Geometry::Sphere { center, radius } => {
-                let row = canonical::sphere(to_world, *center, *radius);
+                let row = canonical::sphere(to_world, center, radius);
                 self.refer(row.sphere.bounds(), SPHERE);
                 self.surfaces.spheres.push(row);
                 (
@@ -154,14 +166,14 @@ impl Shapes {
             }
             Geometry::Disk => self.add_canonical(canonical::disk(to_world)),
             Geometry::Cylinder { p0, p1, radius } => {
-                self.add_canonical(canonical::cylinder(to_world, *p0, *p1, *radius))
+                self.add_canonical(canonical::cylinder(to_world, p0, p1, radius))
             }
         };
         let bounds = self.references[references..].iter().fold(Aabb::EMPTY, |b, r| b.union(r.bounds));
         // Extents are squared in areas; half the exponent range is the end of it.
         let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
         if self.references.len() > references && !(reach.is_finite() && reach < 1e18) {
-            return Err(CompileError::OutOfRange { shape: shape.name.clone() });
+            return Err(CompileError::OutOfRange { shape: shape.name });
         }
         let side = if shape.flip_normals { -1.0 } else { 1.0 };
         let extent = emitter_extent(&emitting);
@@ -174,10 +186,6 @@ impl Shapes {
                 LightId(lights.len() as u32 - 1)
             }
             _ => LightId::NONE,
-        };
-        let mesh = match &shape.geometry {
-            Geometry::Mesh { mesh, .. } => named.meshes.number(mesh),
-            _ => attributes::NONE,
         };
         self.surfaces.attributed |= mesh != attributes::NONE;
         self.surfaces.shapes.push(ShapeRow {
@@ -215,7 +223,7 @@ impl Shapes {
         let Interpolated { uv, normal } = add(&mut self.surfaces);
         let (mut emitting, mut degenerate) = (Vec::new(), 0);
         for index in first..self.surfaces.triangles.len() {
-            let triangle = self.surfaces.triangle(index);
+            let triangle = self.surfaces.triangle(index, uv);
             if triangle.e1().cross(triangle.e2()) == Vec3::ZERO {
                 // Its determinant would be noise: a hit where there is nothing.
                 self.number();
@@ -260,8 +268,8 @@ fn emitter_extent(emitting: &Emitting) -> Vec3 {
 }
 
 impl Surfaces {
-    fn triangle(&self, index: usize) -> Triangle {
-        let [v0, v1, v2] = self.triangles[index].map(|i| self.vertices[i as usize].position);
+    fn triangle(&self, index: usize, uv: Interpolate) -> Triangle {
+        let [v0, v1, v2] = self.vertices.positions(uv, self.triangles[index]);
         Triangle::new(v0, v1, v2)
     }
 
@@ -269,8 +277,10 @@ impl Surfaces {
     pub(super) fn corners(&self, id: u32) -> Option<[Vec3; 3]> {
         let shape = self.shape(id);
         let index = (id - shape.first + shape.first_in_class) as usize;
-        matches!(shape.class, Class::Triangles { .. })
-            .then(|| self.triangles[index].map(|i| self.vertices[i as usize].position))
+        match shape.class {
+            Class::Triangles { uv, .. } => Some(self.vertices.positions(uv, self.triangles[index])),
+            Class::Sphere { .. } | Class::Canonical => None,
+        }
     }
 
     /// What the kernels need of a primitive.
@@ -278,7 +288,7 @@ impl Surfaces {
         let shape = self.shape(id);
         let index = (id - shape.first + shape.first_in_class) as usize;
         match shape.class {
-            Class::Triangles { .. } => Primitive::Triangle(self.triangle(index)),
+            Class::Triangles { uv, .. } => Primitive::Triangle(self.triangle(index, uv)),
             Class::Sphere { .. } => Primitive::Sphere(self.spheres[index].sphere),
             Class::Canonical => Primitive::Canonical(self.canonicals[index].surface),
         }

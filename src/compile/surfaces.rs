@@ -1,8 +1,8 @@
 //! What is known about each primitive besides where it is: normals, texture coordinates, material, light.
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
-use super::Asked;
+use super::{Asked, vertices::Vertices};
 use crate::geometry::{Canonical, CanonicalKind, Sphere};
 use crate::light::LightId;
 use crate::material::MaterialId;
@@ -11,16 +11,6 @@ use crate::simd::{Bits, MOST, Mask, Real, Vector3, vector3};
 use crate::texture::Coordinates;
 
 pub(super) mod partials;
-
-/// A vertex in world space: 32 bytes.
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-pub(super) struct Vertex {
-    pub(super) position: Vec3,
-    pub(super) u: f32,
-    pub(super) normal: Vec3,
-    pub(super) v: f32,
-}
 
 /// What a triangle's uv and shading normal are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,7 +73,7 @@ pub(super) struct Surfaces {
     /// For each primitive its shape.
     pub(super) shape_of: Vec<u32>,
     pub(super) shapes: Vec<ShapeRow>,
-    pub(super) vertices: Vec<Vertex>,
+    pub(super) vertices: Vertices,
     pub(super) triangles: Vec<[u32; 3]>,
     pub(super) spheres: Vec<SphereRow>,
     pub(super) canonicals: Vec<CanonicalRow>,
@@ -254,6 +244,7 @@ impl Surfaces {
         let mut part = if triangles != 0 {
             // Lanes of other classes read the first triangle there is, and are replaced below.
             let lane = triangles.trailing_zeros() as usize;
+            mapped |= if mapped >> lane & 1 != 0 { !triangles & ((1 << R::LANES) - 1) } else { 0 };
             let safe = |i: usize| index(if triangles >> i & 1 != 0 { i } else { lane });
             self.triangles(safe, (smooth, mapped), (u, v))
         } else {
@@ -305,8 +296,9 @@ impl Surfaces {
         for (i, corner) in corners[..R::LANES].iter_mut().enumerate() {
             *corner = self.triangles[index(i)];
         }
-        let row = |i: usize, k: usize| self.vertices[corners[i][k] as usize].row();
-        let [p0, p1, p2] = if corners[1..R::LANES].iter().all(|corner| *corner == corners[0]) {
+        let row = |i: usize, k: usize| self.vertices.row(mapped >> i & 1 != 0, corners[i][k]);
+        let one_column = mapped == 0 || mapped == (1 << R::LANES) - 1;
+        let [p0, p1, p2] = if one_column && corners[1..R::LANES].iter().all(|corner| *corner == corners[0]) {
             let splat = |row: [f32; 8]| std::array::from_fn(|n| R::splat(row[n]));
             [splat(row(0, 0)), splat(row(0, 1)), splat(row(0, 2))]
         } else {
@@ -318,7 +310,7 @@ impl Surfaces {
         let w = R::one() - u - v;
         let mut n_s = n_g;
         if smooth != 0 {
-            let normal = |p: [R; 8]| vector3(p[4], p[5], p[6]);
+            let normal = |p: [R; 8]| vector3(p[3], p[4], p[5]);
             let n = normal(p0).scale(w) + normal(p1).scale(u) + normal(p2).scale(v);
             n_s = Vector3::select(R::Mask::from_bitmask(smooth), n.normalize_or(n_g), n_g);
         }
@@ -326,7 +318,7 @@ impl Surfaces {
         if mapped != 0 {
             let along = |k: usize| p0[k] * w + p1[k] * u + p2[k] * v;
             let mapped = R::Mask::from_bitmask(mapped);
-            uv = (R::select(mapped, along(3), u), R::select(mapped, along(7), v));
+            uv = (R::select(mapped, along(6), u), R::select(mapped, along(7), v));
         }
         Part { position: v0 + (e1.scale(u) + e2.scale(v)), extent: e1.abs() + e2.abs(), n_g, n_s, uv }
     }
@@ -385,16 +377,4 @@ impl CanonicalRow {
 fn turns<R: Real>(y: R, x: R) -> R {
     let angle = atan2(y, x) * R::splat(INV_TWO_PI);
     R::select(angle.lt(R::zero()), angle + R::one(), angle).min(R::splat(1.0 - f32::EPSILON / 2.0))
-}
-
-impl Vertex {
-    pub(super) fn new(position: Vec3, normal: Vec3, uv: Vec2) -> Self {
-        Self { position, u: uv.x, normal, v: uv.y }
-    }
-
-    #[inline]
-    fn row(&self) -> [f32; 8] {
-        let Self { position: p, u, normal: n, v } = *self;
-        [p.x, p.y, p.z, u, n.x, n.y, n.z, v]
-    }
 }

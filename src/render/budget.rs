@@ -56,15 +56,17 @@ impl Budget {
         }
     }
 
-    /// The most that is there at one time: a tree is finished before a film is begun.
+    /// The most that is there at one time, if the description is given away: meshes are in columns before a tree is
+    /// built, and that is finished before a film is begun.
     pub fn peak(&self) -> u64 {
-        let Needs { meshes, textures, columns, tree, building } = self.scene;
-        self.program + meshes + textures + columns + tree + building.max(self.film + self.wavefronts)
+        let Needs { meshes, returned, textures, columns, tree, building } = self.scene;
+        let kept = self.program + meshes - returned + textures + columns;
+        kept + returned.max(tree + building.max(self.film + self.wavefronts))
     }
 
     /// The parts, named, in the order in which they are taken.
     pub fn parts(&self) -> [(&'static str, u64); 8] {
-        let Needs { meshes, textures, columns, tree, building } = self.scene;
+        let Needs { meshes, textures, columns, tree, building, .. } = self.scene;
         [
             ("program", self.program),
             ("meshes", meshes),
@@ -172,6 +174,16 @@ mod tests {
         let budget = Budget::new(&SceneDescription::default(), &CONDITIONS);
         let parts: u64 = budget.parts().iter().map(|(_, bytes)| bytes).sum();
         assert!(budget.peak() <= parts && budget.peak() > budget.film + budget.wavefronts);
+    }
+
+    #[test]
+    fn large_meshes_are_gone_before_a_tree_is_there() {
+        let scene =
+            Needs { meshes: 50, returned: 40, columns: 30, tree: 20, building: 5, ..Needs::default() };
+        let budget = Budget { scene, ..Budget::default() };
+        assert_eq!(budget.peak(), 50 + 30, "meshes and columns");
+        let large = Budget { scene: Needs { tree: 100, ..scene }, ..budget };
+        assert_eq!(large.peak(), 10 + 30 + 100 + 5, "columns and the tree");
     }
 
     #[test]

@@ -217,15 +217,16 @@ impl<'a> Hits<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::simd::{ONE_REGISTER, f32x16};
 
     /// Numbers that say whose they are.
-    fn packet(from: u32) -> Packet {
-        let number = |k: u32| f32x8::from_fn(|i| (100 * (from + i as u32) + k) as f32);
+    fn packet<R: Real>(from: u32) -> Packet<R> {
+        let number = |k: u32| R::from_fn(|i| (100 * (from + i as u32) + k) as f32);
         let path = Path {
             beta: vector3(number(7), number(8), number(9)),
             pdf: number(10),
             eta2: number(11),
-            key: u32x8::from_fn(|i| 0xff80_0001 + from + i as u32),
+            key: R::Bits::from_fn(|i| 0xff80_0001 + from + i as u32),
             depth: 3,
             sample: 5,
         };
@@ -234,7 +235,7 @@ mod tests {
             dir: vector3(number(3), number(4), number(5)),
             t_far: number(6),
             path,
-            pixel: u32x8::from_fn(|i| 0x7f80_0001 + from + i as u32),
+            pixel: R::Bits::from_fn(|i| 0x7f80_0001 + from + i as u32),
         }
     }
 
@@ -244,18 +245,49 @@ mod tests {
         let mut paths = Paths::new(&arena);
         paths.reserve(21);
         let slots = [20, 3, 7, 0, 11, 12, 5, 1];
-        paths.store(&slots, &packet(1));
-        paths.store(&[2, 4], &packet(50));
+        let stored = packet::<f32x8>(1);
+        paths.store(&slots, &stored);
+        paths.store(&[2, 4], &packet::<f32x8>(50));
         paths.keep(&[true; 24]);
-        let same = paths.packet(&slots, 3, 5);
-        assert_eq!(format!("{:?}", same.path), format!("{:?}", packet(1).path));
-        assert_eq!(same.org.lane(1), packet(1).org.lane(1));
-        assert_eq!((same.dir.lane(7), same.t_far.lane(7)), (packet(1).dir.lane(7), 806.0));
+        let same = paths.packet::<f32x8>(&fill(&slots), 3, 5);
+        assert_eq!(format!("{:?}", same.path), format!("{:?}", stored.path));
+        assert_eq!(same.org.lane(1), stored.org.lane(1));
+        assert_eq!((same.dir.lane(7), same.t_far.lane(7)), (stored.dir.lane(7), 806.0));
         // Integers that are NaNs as floats keep their bits.
         assert_eq!((paths.pixel(20), paths.pixel(2)), (0x7f80_0002, 0x7f80_0033));
         let rays = paths.rays(0);
-        assert_eq!(rays.org.lane(2), packet(50).org.lane(0));
+        assert_eq!(rays.org.lane(2), packet::<f32x8>(50).org.lane(0));
         assert_eq!(rays.t_far.lane(7), 306.0);
+    }
+
+    #[test]
+    fn sixteen_paths_are_twice_eight() {
+        if !ONE_REGISTER {
+            return;
+        }
+        let arena = Bump::new();
+        let mut paths = Paths::new(&arena);
+        paths.reserve(24);
+        let slots = [20, 3, 7, 0, 11, 12, 5, 1, 2, 4, 6, 8, 9, 23, 22, 21];
+        // The last of sixteen stays out.
+        paths.store(&slots[..15], &packet::<f32x16>(1));
+        paths.keep(&[true; 24]);
+        for half in [0, 8] {
+            let eight = paths.packet::<f32x8>(&fill(&slots[half..15.min(half + 8)]), 3, 5);
+            let whole = paths.packet::<f32x16>(&fill(&slots[..15]), 3, 5);
+            for lane in 0..8 {
+                let number = half + lane;
+                assert_eq!(eight.org.lane(lane), whole.org.lane(number), "{number}");
+                assert_eq!(eight.path.key.lane(lane), whole.path.key.lane(number), "{number}");
+                let stored = packet::<f32x16>(1).path.beta.lane(number.min(14));
+                assert_eq!(
+                    [eight.path.beta.lane(lane), whole.path.beta.lane(number)],
+                    [stored; 2],
+                    "{number}"
+                );
+            }
+        }
+        assert_eq!(paths.pixel(21), 0, "nothing was put there");
     }
 
     #[test]
@@ -264,9 +296,9 @@ mod tests {
         let mut paths = Paths::new(&arena);
         paths.reserve(20);
         for first in [0, 8] {
-            paths.store(&std::array::from_fn::<u32, 8, _>(|i| first + i as u32), &packet(first));
+            paths.store(&std::array::from_fn::<u32, 8, _>(|i| first + i as u32), &packet::<f32x8>(first));
         }
-        paths.store(&[16, 17, 18, 19], &packet(16));
+        paths.store(&[16, 17, 18, 19], &packet::<f32x8>(16));
         let mut alive = [false; 24];
         for slot in [1, 6, 17, 19] {
             alive[slot] = true;
@@ -295,7 +327,7 @@ mod tests {
                 f32x8::from_fn(|i| sign(i, 2)),
             );
             let at = std::array::from_fn::<_, LANES, _>(|i| first + i as u32);
-            paths.store(&at, &Packet { dir, pixel: u32x8::from_fn(|i| at[i]), ..packet(0) });
+            paths.store(&at, &Packet { dir, pixel: u32x8::from_fn(|i| at[i]), ..packet::<f32x8>(0) });
         }
         let alive: Vec<bool> = (0..24).map(|slot| slot < 21 && slot % 7 != 2).collect();
         paths.keep(&alive);
@@ -325,7 +357,7 @@ mod tests {
         (0..9).for_each(|slot| hits.set(slot, &hit(slot)));
         hits.set(4, &Hit::MISS);
         assert_eq!((hits.primitive(8), hits.primitive(4).0), ((PrimitiveId(8), 0.25), PrimitiveId::NONE));
-        let ((t, u, v), primitive) = hits.packet(&fill(&[2, 8, 4]));
+        let ((t, u, v), primitive) = hits.packet::<f32x8>(&fill(&[2, 8, 4]));
         assert_eq!((t.lane(1), u.lane(0), v.lane(7)), (8.0, 0.25, Hit::MISS.v));
         assert_eq!((primitive.lane(1), primitive.lane(2)), (8, PrimitiveId::NONE.0));
     }

@@ -1,18 +1,18 @@
 //! From two children to eight: nodes and slots laid out as [`weigh`](super::weigh) chose.
 //!
 //! The tree is cut into segments: subtrees of up to [`SEGMENT`] places, and between the root and
-//! them one segment a node. Threads outline segments by themselves; once it is known how long they are, each node
-//! has its place, and threads fill nodes in. Segments follow each other depth first, and where they are
-//! cut depends on the tree alone.
+//! them one segment a node. Threads walk through each segment twice, by the same steps: first they count its nodes and
+//! slots; then, as it is known where each begins, they fill them in. So nothing is there twice. Segments follow each
+//! other depth first, and where they are cut depends on the tree alone.
 
 use rayon::prelude::*;
 
 use super::{
     binary::{Binary, Packed, Run},
-    reference::Reference,
+    reference::Names,
     weigh::Choices,
 };
-use crate::bvh::{BLOCK, Child, Kind, Node};
+use crate::bvh::{BLOCK, Child, Node};
 
 /// Places of a segment, at most.
 const SEGMENT: u32 = 4096;
@@ -22,24 +22,7 @@ const SEGMENT: u32 = 4096;
 pub(super) struct Weighed<'a> {
     pub(super) nodes: &'a [Packed],
     pub(super) choices: &'a Choices,
-    pub(super) references: &'a [Reference],
-}
-
-/// A node of eight before it has a place: which binary nodes its children are, and what is behind them,
-/// counted from the start of the segment.
-#[derive(Clone, Copy)]
-struct Outline {
-    roots: [u32; 8],
-    children: [Child; 8],
-}
-
-impl Outline {
-    const EMPTY: Self = Self { roots: [0; 8], children: [Child::ABSENT; 8] };
-
-    fn set(&mut self, place: usize, run: Run, child: Child) {
-        self.roots[place] = run.root;
-        self.children[place] = child;
-    }
+    pub(super) names: &'a Names,
 }
 
 /// Up to eight subtrees.
@@ -64,76 +47,155 @@ impl Forest {
 struct Segment {
     /// The binary subtree that it begins with.
     run: Run,
-    /// One node between the root and the rest: its inner children are the numbers of segments.
-    is_top: bool,
-    outlines: Vec<Outline>,
-    /// What is in its slots, a list of whole blocks for each class.
-    slots: Vec<Vec<u32>>,
+    /// Of one node between the root and the rest: at the places of its inner children, the numbers of their segments.
+    top: Option<[u32; 8]>,
 }
 
-/// Where a segment's nodes and its slots of each class begin.
-#[derive(Clone)]
-struct Start {
-    node: u32,
-    slots: Vec<u32>,
+/// Where a walk puts what it meets.
+trait Target {
+    /// A node; returns its index.
+    fn node(&mut self) -> u32;
+    /// The child of a node, and the binary node that it is.
+    fn child(&mut self, node: u32, place: usize, root: u32, child: Child);
+    /// The primitives of a leaf; returns the first slot.
+    fn leaf(&mut self, class: usize, indices: &[u32]) -> u32;
+    /// The first node of another segment.
+    fn first_of(&self, segment: u32) -> u32;
+}
+
+/// What has been laid out: nodes, and slots of each class up to the last that is filled.
+#[derive(Default)]
+struct Extent {
+    nodes: u32,
+    filled: Vec<u32>,
+}
+
+impl Extent {
+    /// Slots of a class, in whole blocks.
+    fn slots(&self, class: usize) -> usize {
+        self.filled.get(class).map_or(0, |&filled| (filled as usize).next_multiple_of(BLOCK))
+    }
+}
+
+/// Counts.
+impl Target for Extent {
+    fn node(&mut self) -> u32 {
+        self.nodes += 1;
+        self.nodes - 1
+    }
+
+    fn child(&mut self, _: u32, _: usize, _: u32, _: Child) {}
+
+    /// No leaf crosses from one block into the next.
+    fn leaf(&mut self, class: usize, indices: &[u32]) -> u32 {
+        if self.filled.len() <= class {
+            self.filled.resize(class + 1, 0);
+        }
+        let (block, count) = (BLOCK as u32, indices.len() as u32);
+        let filled = self.filled[class];
+        let begin = if filled % block + count > block { filled.next_multiple_of(block) } else { filled };
+        self.filled[class] = begin + count;
+        begin
+    }
+
+    fn first_of(&self, _: u32) -> u32 {
+        0
+    }
+}
+
+/// A segment's nodes and its slots of each class, and where they begin.
+#[derive(Default)]
+struct Part<'a> {
+    first: u32,
+    nodes: &'a mut [Node],
+    slots: Vec<(u32, &'a mut [u32])>,
+}
+
+/// Fills a part in.
+struct Filling<'a> {
+    tree: Weighed<'a>,
+    /// First nodes of all segments.
+    firsts: &'a [u32],
+    part: Part<'a>,
+    filled: Extent,
+}
+
+impl Target for Filling<'_> {
+    fn node(&mut self) -> u32 {
+        self.part.first + self.filled.node()
+    }
+
+    fn child(&mut self, node: u32, place: usize, root: u32, child: Child) {
+        let node = &mut self.part.nodes[(node - self.part.first) as usize];
+        node.set(place, self.tree.node(root).bounds, child);
+    }
+
+    fn leaf(&mut self, class: usize, indices: &[u32]) -> u32 {
+        let begin = self.filled.leaf(class, indices);
+        let (first, slots) = &mut self.part.slots[class];
+        slots[begin as usize..][..indices.len()].copy_from_slice(indices);
+        *first + begin
+    }
+
+    fn first_of(&self, segment: u32) -> u32 {
+        self.firsts[segment as usize]
+    }
 }
 
 /// Lays out nodes and slots.
 pub(super) fn collapse(tree: Weighed<'_>) -> (Vec<Node>, Vec<u32>) {
     let mut segments = vec![];
     tree.cut(Run::all(tree.nodes), &mut segments);
-    segments.par_iter_mut().with_max_len(1).for_each(|segment| tree.outline(segment));
-
-    let mut owners = vec![];
-    for (i, segment) in segments.iter().enumerate() {
-        owners.resize(owners.len() + segment.outlines.len(), i as u32);
-    }
-    let (starts, slots) = place(&segments);
-    let fill = |(at, &owner): (usize, &u32)| {
-        let (segment, start) = (&segments[owner as usize], &starts[owner as usize]);
-        let outline = &segment.outlines[at - start.node as usize];
-        let mut node = Node::EMPTY;
-        for place in 0..8 {
-            let root = outline.roots[place];
-            let child = match outline.children[place].kind() {
-                Kind::Absent => continue,
-                Kind::Inner(number) if segment.is_top => Child::inner(starts[number as usize].node),
-                Kind::Inner(index) => Child::inner(start.node + index),
-                Kind::Leaf { first, count } => Child::leaf(start.slots[tree.class(root)] + first, count),
-            };
-            node.set(place, tree.node(root).bounds, child);
-        }
-        node
+    let count = |segment: &Segment| {
+        let mut extent = Extent::default();
+        tree.walk(segment, &mut extent);
+        extent
     };
-    (owners.par_iter().enumerate().map(fill).collect(), slots)
+    let extents: Vec<Extent> = segments.par_iter().with_max_len(1).map(count).collect();
+
+    let classes = extents.iter().map(|extent| extent.filled.len()).max().unwrap_or(0);
+    let node_count = extents.iter().map(|extent| extent.nodes as usize).sum();
+    let slot_count =
+        (0..classes).flat_map(|class| extents.iter().map(move |extent| extent.slots(class))).sum();
+    let mut nodes: Vec<Node> = rayon::iter::repeat_n(Node::EMPTY, node_count).collect();
+    let mut slots = vec![u32::MAX; slot_count];
+    let parts = divide(&extents, classes, &mut nodes, &mut slots);
+    let firsts: Vec<u32> = parts.iter().map(|part| part.first).collect();
+    segments.par_iter().zip(parts).with_max_len(1).for_each(|(segment, part)| {
+        let mut filling = Filling { tree, firsts: &firsts, part, filled: Extent::default() };
+        tree.walk(segment, &mut filling);
+    });
+    (nodes, slots)
 }
 
 /// Segments one after the other; slots class by class.
-fn place(segments: &[Segment]) -> (Vec<Start>, Vec<u32>) {
-    let classes = segments.iter().map(|segment| segment.slots.len()).max().unwrap_or(0);
-    let mut node = 0;
-    let mut starts = vec![];
-    for segment in segments {
-        starts.push(Start { node, slots: vec![0; classes] });
-        node += segment.outlines.len() as u32;
+fn divide<'a>(
+    extents: &[Extent],
+    classes: usize,
+    mut nodes: &'a mut [Node],
+    mut slots: &'a mut [u32],
+) -> Vec<Part<'a>> {
+    let mut parts = Vec::with_capacity(extents.len());
+    let mut first = 0;
+    for extent in extents {
+        let (own, others) = nodes.split_at_mut(extent.nodes as usize);
+        nodes = others;
+        parts.push(Part { first, nodes: own, slots: Vec::with_capacity(classes) });
+        first += extent.nodes;
     }
-    let mut slots =
-        Vec::with_capacity(segments.iter().flat_map(|segment| &segment.slots).map(Vec::len).sum());
+    let mut first = 0;
     for class in 0..classes {
-        for (segment, start) in segments.iter().zip(&mut starts) {
-            start.slots[class] = slots.len() as u32;
-            slots.extend_from_slice(segment.slots.get(class).map_or(&[], Vec::as_slice));
+        for (extent, part) in extents.iter().zip(&mut parts) {
+            let (own, others) = slots.split_at_mut(extent.slots(class));
+            slots = others;
+            part.slots.push((first, own));
+            first += extent.slots(class) as u32;
         }
     }
-    (starts, slots)
+    parts
 }
 
 impl Weighed<'_> {
-    /// The class of the references below a leaf.
-    fn class(&self, root: u32) -> usize {
-        usize::from(self.references[self.node(root).first as usize].class)
-    }
-
     fn node(&self, root: u32) -> Binary {
         Binary::unpack(&self.nodes[root as usize])
     }
@@ -146,67 +208,56 @@ impl Weighed<'_> {
     fn cut(&self, run: Run, segments: &mut Vec<Segment>) -> u32 {
         let number = segments.len();
         let is_top = run.places > SEGMENT && !self.is_leaf(run);
-        segments.push(Segment { run, is_top, outlines: vec![], slots: vec![] });
+        segments.push(Segment { run, top: None });
         if is_top {
-            segments[number].outlines.push(Outline::EMPTY);
-            for (place, child) in self.forest(run).places() {
-                let what = if self.is_leaf(child) {
-                    self.leaf(child, &mut segments[number].slots)
-                } else {
-                    Child::inner(self.cut(child, segments))
-                };
-                segments[number].outlines[0].set(place, child, what);
+            let mut numbers = [0; 8];
+            for (place, child) in self.forest(run).places().filter(|&(_, child)| !self.is_leaf(child)) {
+                numbers[place] = self.cut(child, segments);
             }
+            segments[number].top = Some(numbers);
         }
         number as u32
     }
 
-    /// Outlines a segment that is not of the top.
-    fn outline(&self, segment: &mut Segment) {
-        if segment.is_top {
-            return;
-        }
-        if self.is_leaf(segment.run) {
-            let mut lone = Outline::EMPTY;
-            lone.set(0, segment.run, self.leaf(segment.run, &mut segment.slots));
-            segment.outlines.push(lone);
+    /// Lays a segment out.
+    fn walk(&self, segment: &Segment, target: &mut impl Target) {
+        let Segment { run, top } = *segment;
+        if self.is_leaf(run) {
+            let (lone, leaf) = (target.node(), self.leaf(run, target));
+            target.child(lone, 0, run.root, leaf);
+        } else if let Some(numbers) = top {
+            self.expand(run, target, &|_, place, target| target.first_of(numbers[place]));
         } else {
-            self.expand(segment.run, segment);
+            self.expand(run, target, &|child, _, target| self.subtree(child, target));
         }
     }
 
-    /// Outlines a node and what is below it, depth first; returns its index.
-    fn expand(&self, run: Run, segment: &mut Segment) -> u32 {
-        let index = segment.outlines.len();
-        segment.outlines.push(Outline::EMPTY);
+    /// Lays out a node and what is below it, depth first; returns its index.
+    fn subtree(&self, run: Run, target: &mut impl Target) -> u32 {
+        self.expand(run, target, &|child, _, target| self.subtree(child, target))
+    }
+
+    /// Lays out a node; `inner` has the index of a child that is no leaf, by its place.
+    fn expand<T: Target>(&self, run: Run, target: &mut T, inner: &impl Fn(Run, usize, &mut T) -> u32) -> u32 {
+        let index = target.node();
         for (place, child) in self.forest(run).places() {
             let what = if self.is_leaf(child) {
-                self.leaf(child, &mut segment.slots)
+                self.leaf(child, target)
             } else {
-                Child::inner(self.expand(child, segment))
+                Child::inner(inner(child, place, target))
             };
-            segment.outlines[index].set(place, child, what);
+            target.child(index, place, child.root, what);
         }
-        index as u32
+        index
     }
 
-    /// Puts a leaf's references into slots, none across blocks.
-    fn leaf(&self, run: Run, slots: &mut Vec<Vec<u32>>) -> Child {
+    /// Puts a leaf's primitives into slots.
+    fn leaf(&self, run: Run, target: &mut impl Target) -> Child {
         let first = self.node(run.root).first as usize;
-        let references = &self.references[first..][..self.choices.of(run.root).leaf_count()];
-        let class = usize::from(references[0].class);
-        if slots.len() <= class {
-            slots.resize(class + 1, vec![]);
-        }
-        let slots = &mut slots[class];
-        let filled = slots.iter().rposition(|&slot| slot != u32::MAX).map_or(0, |last| last + 1);
-        let begin =
-            if filled % BLOCK + references.len() > BLOCK { filled.next_multiple_of(BLOCK) } else { filled };
-        slots.resize((begin + references.len()).next_multiple_of(BLOCK), u32::MAX);
-        for (slot, reference) in slots[begin..].iter_mut().zip(references) {
-            *slot = reference.index;
-        }
-        Child::leaf(begin as u32, references.len() as u32)
+        let count = self.choices.of(run.root).leaf_count();
+        let class = usize::from(self.names.classes[first]);
+        let begin = target.leaf(class, &self.names.indices[first..][..count]);
+        Child::leaf(begin, count as u32)
     }
 
     /// The roots of the forest that fills a node of eight.

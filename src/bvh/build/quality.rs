@@ -5,7 +5,9 @@ use super::{
     binary::Binary,
     binned,
     collapse::{Weighed, collapse},
-    morton, reinsert,
+    morton,
+    reference::Names,
+    reinsert,
     weigh::Choices,
 };
 use crate::bvh::Bvh;
@@ -41,9 +43,11 @@ impl Bvh {
                 reinsert::reinsert(binary, &mut references)
             }
         };
-        let choices = Choices::new(&binary, &references);
+        // From here on only leaves name primitives.
+        let names = Names::new(references);
+        let choices = Choices::new(&binary, &names);
         let Aabb { min, max } = Binary::unpack(&binary[0]).bounds;
-        let (nodes, slots) = collapse(Weighed { nodes: &binary, choices: &choices, references: &references });
+        let (nodes, slots) = collapse(Weighed { nodes: &binary, choices: &choices, names: &names });
         Self { nodes, slots, reach: min.abs().max(max.abs()) }
     }
 

@@ -1,6 +1,7 @@
 //! What the builder sees of a primitive: a box, a number, a class.
 
 use glam::{Vec3A, Vec3Swizzles, Vec4, Vec4Swizzles};
+use rayon::prelude::*;
 
 use crate::geometry::Aabb;
 use crate::simd::{Mask, Real, f32x8};
@@ -31,6 +32,23 @@ impl Reference {
     #[inline]
     pub(super) fn centre(&self, axis: usize) -> f32 {
         self.bounds.min[axis] + self.bounds.max[axis]
+    }
+}
+
+/// What is left of references when their boxes are in a tree, in leaf order: 5 bytes each.
+#[derive(Default)]
+pub(super) struct Names {
+    pub(super) indices: Vec<u32>,
+    pub(super) classes: Vec<u8>,
+}
+
+impl Names {
+    /// Gives the boxes' memory back.
+    pub(super) fn new(references: Vec<Reference>) -> Self {
+        let mut names = Self::default();
+        let both = references.par_iter().map(|reference| (reference.index, reference.class));
+        both.unzip_into_vecs(&mut names.indices, &mut names.classes);
+        names
     }
 }
 

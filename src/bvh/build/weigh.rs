@@ -14,7 +14,7 @@
 use super::{
     MAX_LEAF,
     binary::{Binary, Packed},
-    reference::Reference,
+    reference::Names,
 };
 use crate::simd::{Bits, Real, f32x8, u32x8};
 
@@ -50,9 +50,9 @@ impl Choice {
 pub(super) struct Choices(Vec<u32>);
 
 impl Choices {
-    pub(super) fn new(nodes: &[Packed], references: &[Reference]) -> Self {
+    pub(super) fn new(nodes: &[Packed], names: &Names) -> Self {
         let mut choices = vec![0; nodes.len()];
-        weigh(nodes, &mut choices, references);
+        weigh(nodes, &mut choices, names);
         Self(choices)
     }
 
@@ -71,7 +71,7 @@ fn leaf_cost(count: usize) -> f32 {
 }
 
 /// Fills in the choices for the run of `nodes[0]`. Returns the costs and the number of references.
-fn weigh(nodes: &[Packed], choices: &mut [u32], references: &[Reference]) -> (Costs, usize) {
+fn weigh(nodes: &[Packed], choices: &mut [u32], names: &Names) -> (Costs, usize) {
     let node = Binary::unpack(&nodes[0]);
     let area = node.bounds.half_area();
     if node.is_leaf() {
@@ -82,8 +82,8 @@ fn weigh(nodes: &[Packed], choices: &mut [u32], references: &[Reference]) -> (Co
     let (left_nodes, right_nodes) = nodes[1..].split_at(node.right() - 1);
     let (choice, rest) = choices.split_first_mut().expect("a node has a choice");
     let (left_choices, right_choices) = rest.split_at_mut(node.right() - 1);
-    let mut left = || weigh(left_nodes, left_choices, references);
-    let mut right = || weigh(right_nodes, right_choices, references);
+    let mut left = || weigh(left_nodes, left_choices, names);
+    let mut right = || weigh(right_nodes, right_choices, names);
     let ((left, left_count), (right, right_count)) =
         if nodes.len() < PARALLEL { (left(), right()) } else { rayon::join(left, right) };
     let (distributed, from_left) = distribute(left, right);
@@ -91,9 +91,9 @@ fn weigh(nodes: &[Packed], choices: &mut [u32], references: &[Reference]) -> (Co
     let mut single = area * NODE_COST + distributed.lane(7);
     let mut leaf_count = 0;
     if count <= MAX_LEAF {
-        let run = &references[node.first as usize..][..count];
+        let classes = &names.classes[node.first as usize..][..count];
         let leaf = area * leaf_cost(count);
-        if leaf <= single && run.iter().all(|reference| reference.class == run[0].class) {
+        if leaf <= single && classes.iter().all(|class| *class == classes[0]) {
             (single, leaf_count) = (leaf, count);
         }
     }

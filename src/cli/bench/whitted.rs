@@ -14,7 +14,7 @@ use crate::{
         overrides::{IntegratorName, Overrides},
         source::Source,
     },
-    compile::compile_with,
+    compile::compile_owned,
     load::Loaded,
     render::{Settings, render},
 };
@@ -52,7 +52,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         seed: None,
     };
     overrides.apply(&mut description);
-    let scene = compile_with(&description, arguments.quality.quality())?;
+    let scene = compile_owned(description, arguments.quality.quality())?;
     let once = || {
         let start = Instant::now();
         let statistics = render(&scene, &Settings::default(), &|_| {}).statistics;

@@ -3,7 +3,7 @@
 
 use std::f32::consts::{PI, TAU};
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::{Class, Interpolate, Surfaces};
 use crate::geometry::CanonicalKind;
@@ -48,13 +48,14 @@ impl Surfaces {
     }
 
     fn triangle_partials(&self, index: usize, uv: Interpolate) -> [Vec3; 2] {
-        let [v0, v1, v2] = self.triangles[index].map(|i| &self.vertices[i as usize]);
-        let (e1, e2) = (v1.position - v0.position, v2.position - v0.position);
+        let corners = self.triangles[index];
+        let [v0, v1, v2] = self.vertices.positions(uv, corners);
+        let (e1, e2) = (v1 - v0, v2 - v0);
         if uv == Interpolate::Face {
             return [e1, e2];
         }
-        let (du1, dv1) = (v1.u - v0.u, v1.v - v0.v);
-        let (du2, dv2) = (v2.u - v0.u, v2.v - v0.v);
+        let [uv0, uv1, uv2] = corners.map(|i| self.vertices.mapped[i as usize].uv);
+        let (Vec2 { x: du1, y: dv1 }, Vec2 { x: du2, y: dv2 }) = (uv1 - uv0, uv2 - uv0);
         let determinant = du1 * dv2 - dv1 * du2;
         if determinant == 0.0 {
             return [Vec3::ZERO; 2];
