@@ -9,8 +9,8 @@ const START: usize = 8;
 
 /// Inserts attributes of the type `string` before all others of the first header.
 ///
-/// `bytes` is a whole file of one layer in scan lines.
-pub(super) fn insert(bytes: &[u8], attributes: &[(String, String)]) -> Result<Vec<u8>, String> {
+/// `file` is a whole one of one layer in scan lines; in its place, for a copy of it would take as much memory again.
+pub(super) fn insert(mut file: Vec<u8>, attributes: &[(String, String)]) -> Result<Vec<u8>, String> {
     let mut inserted = Vec::new();
     for (name, value) in attributes {
         // Longer names need a flag that old readers don't know.
@@ -22,17 +22,16 @@ pub(super) fn insert(bytes: &[u8], attributes: &[(String, String)]) -> Result<Ve
         inserted.extend(value.bytes());
     }
     let damaged = || "the file has no header".to_owned();
-    let table = header_end(bytes).ok_or_else(damaged)?;
-    let mut out = [&bytes[..START], &inserted, &bytes[START..]].concat();
+    let table = header_end(&file).ok_or_else(damaged)?;
     // The table of offsets follows the header, and ends where the first chunk begins.
-    let first = bytes.get(table..table + 8).and_then(|entry| entry.try_into().ok()).map(u64::from_le_bytes);
+    let first = file.get(table..table + 8).and_then(|entry| entry.try_into().ok()).map(u64::from_le_bytes);
     let end = first.and_then(|first| usize::try_from(first).ok()).ok_or_else(damaged)?;
-    let shifted = inserted.len();
-    let entries = out.get_mut(table + shifted..end + shifted).ok_or_else(damaged)?;
+    let entries = file.get_mut(table..end).ok_or_else(damaged)?;
     for entry in entries.as_chunks_mut::<8>().0 {
-        *entry = (u64::from_le_bytes(*entry) + shifted as u64).to_le_bytes();
+        *entry = (u64::from_le_bytes(*entry) + inserted.len() as u64).to_le_bytes();
     }
-    Ok(out)
+    file.splice(START..START, inserted);
+    Ok(file)
 }
 
 /// The attributes of the type `string` in the first header.

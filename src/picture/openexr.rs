@@ -96,9 +96,8 @@ pub(super) fn encode(picture: &Picture, style: &ExrStyle) -> Result<Vec<u8>, Str
     image.attributes.display_window = IntegerBounds::from_dimensions(whole);
     let mut file = Cursor::new(Vec::new());
     exr_blocks::save(&image, &mut file).map_err(|e| e.to_string())?;
-    // What follows copies the file; its numbers need not be there a third time.
     drop(image);
-    exr_header::insert(&file.into_inner(), &style.attributes)
+    exr_header::insert(file.into_inner(), &style.attributes)
 }
 
 /// A part of a colour, in whatever layer; `Y` in a layer is a coordinate.
