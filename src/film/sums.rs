@@ -107,23 +107,26 @@ impl Sums {
     }
 
     /// The same of a row that [`quads`] describes, if none of its numbers is too great. Is it there now?
+    ///
+    /// `FIRST` says that there was none: sums are 0, and are not read. To a system that gives memory out when it is touched,
+    /// reading it and then writing it is touching it twice, and telling all threads in between.
     #[inline]
     #[must_use]
-    pub(super) fn add_row(&mut self, pixel: usize, weight: f32, row: &[Quad]) -> bool {
+    pub(super) fn add_row<const FIRST: bool>(&mut self, pixel: usize, weight: f32, row: &[Quad]) -> bool {
         let sums = &mut self.rows[pixel * row.len()..][..row.len()];
         let added = match (sums, row) {
-            ([sums], [row]) => add_quad(sums, row, weight),
+            ([sums], [row]) => add_quad::<FIRST>(sums, row, weight),
             (sums, row) => {
                 let (sums, row) =
                     (sums.as_flattened_mut().as_chunks_mut().0, row.as_flattened().as_chunks().0);
                 // Of six layers and three colours, in registers.
                 match (<&mut [_; 2]>::try_from(&mut *sums), <&[_; 2]>::try_from(row)) {
-                    (Ok(sums), Ok(row)) => add_eights(sums, row, weight),
-                    _ => add_eights(sums, row, weight),
+                    (Ok(sums), Ok(row)) => add_eights::<FIRST>(sums, row, weight),
+                    _ => add_eights::<FIRST>(sums, row, weight),
                 }
             }
         };
-        self.counts[pixel] += u32::from(added);
+        self.counts[pixel] = u32::from(added) + if FIRST { 0 } else { self.counts[pixel] };
         added
     }
 
@@ -164,22 +167,23 @@ fn is_kept(numbers: f32x8) -> bool {
 }
 
 #[inline]
-fn add_quad(sums: &mut Quad, row: &Quad, weight: f32) -> bool {
+fn add_quad<const FIRST: bool>(sums: &mut Quad, row: &Quad, weight: f32) -> bool {
     let more = row.map(|number| number * weight);
     let kept = is_kept(f32x8::of_halves(more, [0.0; 4]));
     if kept {
-        *sums = std::array::from_fn(|i| sums[i] + more[i]);
+        *sums = std::array::from_fn(|i| if FIRST { 0.0 + more[i] } else { sums[i] + more[i] });
     }
     kept
 }
 
 #[inline(always)]
-fn add_eights(sums: &mut [[f32; LANES]], row: &[[f32; LANES]], weight: f32) -> bool {
+fn add_eights<const FIRST: bool>(sums: &mut [[f32; LANES]], row: &[[f32; LANES]], weight: f32) -> bool {
     let weight = f32x8::splat(weight);
     let kept = row.iter().all(|&eight| is_kept(f32x8::new(eight) * weight));
     if kept {
         for (sums, &eight) in sums.iter_mut().zip(row) {
-            *sums = (f32x8::new(*sums) + f32x8::new(eight) * weight).to_array();
+            let before = if FIRST { f32x8::zero() } else { f32x8::new(*sums) };
+            *sums = (before + f32x8::new(eight) * weight).to_array();
         }
     }
     kept

@@ -96,7 +96,11 @@ impl TileFilm {
     /// The same of a row of [`sums::quads`]: the channels, then 1, then zeros.
     #[inline]
     pub fn add_row(&mut self, pixel: usize, weight: f32, row: &[Quad]) {
-        if !self.open.add_row(pixel, weight, row) {
+        let added = match self.samples.end.is_multiple_of(BLOCK) {
+            true => self.open.add_row::<true>(pixel, weight, row),
+            false => self.open.add_row::<false>(pixel, weight, row),
+        };
+        if !added {
             self.keep_out(pixel as u32);
         }
     }
