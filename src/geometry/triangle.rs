@@ -176,7 +176,7 @@ impl<R: Real> TriangleLanes<R> {
     }
 
     /// The same, for one ray and a block of triangles: rays that leave a surface cross the planes of those around them
-    /// just before they begin, and what is [behind](Aspect::behind) is not looked at further.
+    /// just before they begin, and what they have certainly behind them is not looked at further.
     #[inline(always)]
     pub fn intersect_ahead(
         &self,
