@@ -180,6 +180,9 @@ impl TileFilm {
             }
             next = node.blocks().1;
         }
+        if end.is_multiple_of(BLOCK) && self.open.counts().iter().any(|&count| count > 0) {
+            return Some("a block holds samples before its first one");
+        }
         (next != u64::from(end / BLOCK)).then_some("blocks are missing")
     }
 }
@@ -322,6 +325,7 @@ mod tests {
         assert!(wrong(|film| film.nodes.clear()).is_some());
         assert!(wrong(|film| film.nodes[0].index = 1).is_some());
         assert!(wrong(|film| film.nodes[0].level = 40).is_some());
+        assert!(wrong(|film| film.samples.end = 32).is_some());
         assert!(wrong(|film| film.open = Sums::new(2, 1)).is_some());
         assert!(wrong(|film| film.open = Sums::new(1, 2)).is_some());
         assert!(wrong(|film| *film = TileFilm::new(0, 1, 0)).is_some());

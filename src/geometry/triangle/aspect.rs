@@ -109,7 +109,8 @@ impl<R: Real> Aspect<R> {
         let sign = tested.det.to_bits() & R::Bits::splat(1 << 31);
         let depth = R::from_bits(tested.depth.to_bits() ^ sign);
         let room = self.size(edges) * (edges * R::splat(DEPTH_ULPS)) + R::splat(LEAST);
-        depth.lt(-room) & R::zero().le(ray.t_near)
+        // A sum that overflowed says nothing of its sign.
+        depth.lt(-room) & R::splat(f32::MIN).le(depth) & R::zero().le(ray.t_near)
     }
 
     /// What is to be said of lanes, if it is certain.
