@@ -7,11 +7,11 @@
 //! So whatever shows pictures shows a checkpoint; what is behind the last pixel is nobody's business but
 //! ours.
 
-use std::{fs, io::ErrorKind, path::Path};
+use std::{fs, path::Path};
 
 use super::failure::Failure;
 use crate::{
-    picture::{Format, Style, encode_with, write_whole},
+    picture::{Format, PictureError, Style, encode_with, write_whole},
     render::part::{Part, PartFormatError},
 };
 
@@ -44,12 +44,7 @@ fn from_bytes(bytes: &[u8]) -> Result<Part, PartFormatError> {
 /// Reads a part.
 pub(super) fn load(path: &Path) -> Result<Part, Failure> {
     let failed = |error: String| Failure::Sentence(format!("{}: {error}", path.display()));
-    let bytes = fs::read(path).map_err(|error| {
-        failed(match error.kind() {
-            ErrorKind::NotFound => "there is no such file".into(),
-            _ => error.to_string(),
-        })
-    })?;
+    let bytes = fs::read(path).map_err(|source| PictureError::Io { path: path.into(), source })?;
     from_bytes(&bytes).map_err(|error| match error {
         PartFormatError::Foreign => failed(format!(
             "{error}; those are what --checkpoint and --shard write, and an .exr of a render that was stopped"

@@ -84,7 +84,7 @@ macro_rules! mask {
             type Output = Self;
             #[inline]
             fn bitand(self, rhs: Self) -> Self {
-                Self(self.0.and(rhs.0))
+                Self($set(self.0.0 & rhs.0.0))
             }
         }
 
@@ -92,7 +92,7 @@ macro_rules! mask {
             type Output = Self;
             #[inline]
             fn bitor(self, rhs: Self) -> Self {
-                Self(self.0.or(rhs.0))
+                Self($set(self.0.0 | rhs.0.0))
             }
         }
 
@@ -100,7 +100,7 @@ macro_rules! mask {
             type Output = Self;
             #[inline]
             fn not(self) -> Self {
-                Self(self.0.not())
+                Self($set(!self.0.0))
             }
         }
     };
@@ -155,15 +155,18 @@ mod tests {
                         assert_eq!(got.to_array().map(f32::to_bits), want);
                     }
                     assert_eq!([one.any(), other.any()], [bits != 0; 2]);
-                    assert_eq!([one.not().bits(), other.not().bits()], [!bits & all; 2]);
+                    assert_eq!(
+                        [super::$set(!one.0).bits(), portable::$set(!other.0).bits()],
+                        [!bits & all; 2]
+                    );
                     let (few, many) = (0x5a5a & all, 0x3c0f & all);
                     let and = [
-                        one.and(super::$set::of_bits(few)).bits(),
-                        other.and(portable::$set::of_bits(few)).bits(),
+                        super::$set(one.0 & super::$set::of_bits(few).0).bits(),
+                        portable::$set(other.0 & portable::$set::of_bits(few).0).bits(),
                     ];
                     let or = [
-                        one.or(super::$set::of_bits(many)).bits(),
-                        other.or(portable::$set::of_bits(many)).bits(),
+                        super::$set(one.0 | super::$set::of_bits(many).0).bits(),
+                        portable::$set(other.0 | portable::$set::of_bits(many).0).bits(),
                     ];
                     assert_eq!((and, or), ([bits & few; 2], [bits | many; 2]));
                 }

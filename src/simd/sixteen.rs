@@ -27,8 +27,6 @@ pub const MOST: usize = if ONE_REGISTER { 16 } else { 8 };
 pub trait Eights: Real {
     /// Lanes 8i to 8i + 7.
     fn eight(&self, i: usize) -> f32x8;
-    /// The same of integers.
-    fn eight_bits(bits: &Self::Bits, i: usize) -> u32x8;
 }
 
 impl Eights for f32x8 {
@@ -36,20 +34,12 @@ impl Eights for f32x8 {
     fn eight(&self, _: usize) -> f32x8 {
         *self
     }
-    #[inline(always)]
-    fn eight_bits(bits: &u32x8, _: usize) -> u32x8 {
-        *bits
-    }
 }
 
 impl Eights for f32x16 {
     #[inline(always)]
     fn eight(&self, i: usize) -> f32x8 {
         self.half(i)
-    }
-    #[inline(always)]
-    fn eight_bits(bits: &u32x16, i: usize) -> u32x8 {
-        bits.half(i)
     }
 }
 

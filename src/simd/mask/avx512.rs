@@ -15,7 +15,7 @@ macro_rules! set {
         $compare:ident, $equal:ident, $blend:ident, $blend_bits:ident
     ) => {
         #[derive(Clone, Copy, Debug)]
-        pub(in crate::simd) struct $name($bits);
+        pub(in crate::simd) struct $name(pub(in crate::simd) $bits);
 
         impl $name {
             #[inline]
@@ -80,18 +80,6 @@ macro_rules! set {
             #[inline]
             pub(in crate::simd) fn any(self) -> bool {
                 self.0 != 0
-            }
-            #[inline]
-            pub(in crate::simd) fn and(self, other: Self) -> Self {
-                Self(self.0 & other.0)
-            }
-            #[inline]
-            pub(in crate::simd) fn or(self, other: Self) -> Self {
-                Self(self.0 | other.0)
-            }
-            #[inline]
-            pub(in crate::simd) fn not(self) -> Self {
-                Self(!self.0)
             }
         }
     };

@@ -3,7 +3,7 @@
 macro_rules! set {
     ($name:ident: $float:ident, $int:ident, $bits:expr) => {
         #[derive(Clone, Copy, Debug)]
-        pub(in crate::simd) struct $name(wide::$float);
+        pub(in crate::simd) struct $name(pub(in crate::simd) wide::$float);
 
         impl $name {
             #[inline]
@@ -46,18 +46,6 @@ macro_rules! set {
             #[inline]
             pub(in crate::simd) fn any(self) -> bool {
                 self.0.any()
-            }
-            #[inline]
-            pub(in crate::simd) fn and(self, other: Self) -> Self {
-                Self(self.0 & other.0)
-            }
-            #[inline]
-            pub(in crate::simd) fn or(self, other: Self) -> Self {
-                Self(self.0 | other.0)
-            }
-            #[inline]
-            pub(in crate::simd) fn not(self) -> Self {
-                Self(!self.0)
             }
         }
     };
