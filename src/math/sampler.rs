@@ -25,18 +25,19 @@ impl PathKey {
     }
 }
 
-/// The sequence of some paths, all at the same sample index.
+/// The sequences of some paths, each at a sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampler<R: Real> {
     key: R::Bits,
-    sample: u32,
+    /// Bit-reversed.
+    sample: R::Bits,
 }
 
 impl<R: Real> Sampler<R> {
-    /// The sampler of the paths with these [`PathKey`]s.
+    /// The sampler of the paths with these [`PathKey`]s at these samples of their pixels.
     #[inline]
-    pub fn new(key: R::Bits, sample: u32) -> Self {
-        Self { key, sample }
+    pub fn new(key: R::Bits, sample: R::Bits) -> Self {
+        Self { key, sample: sample.reverse_bits() }
     }
 
     /// Two numbers in [0, 1) from a pair of dimensions.
@@ -44,7 +45,7 @@ impl<R: Real> Sampler<R> {
     pub fn pair(&self, pair: u32) -> (R, R) {
         let seed = mix(self.key ^ R::Bits::splat(mix(pair.wrapping_mul(0x9e37_79b9))));
         // Reversed indices throughout: the first Sobol' dimension reversed is the index itself.
-        let reversed = laine_karras(R::Bits::splat(self.sample.reverse_bits()), seed);
+        let reversed = laine_karras(self.sample, seed);
         let index = reversed.reverse_bits();
         let first = laine_karras(index, mix(seed ^ R::Bits::splat(0xa511_e9b3)));
         let second = laine_karras(sobol_second_reversed(index), mix(seed ^ R::Bits::splat(0x63d8_3595)));
@@ -148,10 +149,11 @@ mod tests {
     #[test]
     fn lanes_have_the_scalar_bits() {
         let keys = u32x8::from_fn(|i| PathKey::new(i as u32, 4, 1).0);
-        for sample in [0, 1, 7, 255, 65_537] {
-            let (x, y) = Sampler::<f32x8>::new(keys, sample).pair(9);
+        for first in [0, 1, 7, 255, 65_537] {
+            let samples = u32x8::from_fn(|i| first + i as u32 / 2);
+            let (x, y) = Sampler::<f32x8>::new(keys, samples).pair(9);
             for lane in 0..8 {
-                let scalar = Sampler::<f32>::new(keys.lane(lane), sample).pair(9);
+                let scalar = Sampler::<f32>::new(keys.lane(lane), samples.lane(lane)).pair(9);
                 assert_eq!(
                     (x.lane(lane).to_bits(), y.lane(lane).to_bits()),
                     (scalar.0.to_bits(), scalar.1.to_bits())

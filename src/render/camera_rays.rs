@@ -5,29 +5,49 @@ use crate::compile::Scene;
 use crate::film::Tile;
 use crate::geometry::RayLanes;
 use crate::math::{PathKey, Sampler};
-use crate::simd::{Bits, LANES, Real, f32x8, u32x8};
+use crate::simd::{Bits, LANES, Real, u32x8};
 
 /// A tile's pixels, in the order of its first paths.
 pub(super) struct Pixels {
-    /// The paths of the tile's pixels, row by row.
+    /// The places of the tile's pixels in the order of paths, row by row.
     pub(super) paths: Vec<u32>,
-    /// Column and row in the film, and the [`PathKey`]s, eight at a time; the last is repeated to fill a packet.
-    pub(super) packets: Vec<(u32x8, u32x8, u32x8)>,
+    /// Column and row in the film, and the [`PathKey`]s, in the order of paths; the last is repeated to fill a packet.
+    columns: [Vec<u32>; 3],
 }
 
 impl Pixels {
     pub(super) fn new(scene: &Scene, tile: &Tile) -> Self {
         let order = morton(tile);
-        let packet = |group: &[(u32, u32)]| {
-            let pixel = |i: usize| group[i.min(group.len() - 1)];
-            let (x, y) = (u32x8::from_fn(|i| tile.x + pixel(i).0), u32x8::from_fn(|i| tile.y + pixel(i).1));
-            (x, y, keys::<f32x8>(scene, x, y))
-        };
         let mut paths = vec![0; order.len()];
+        let mut columns = [0; 3].map(|_: u32| Vec::with_capacity(order.len() + LANES));
         for (path, &(x, y)) in (0..).zip(&order) {
             paths[(y * tile.width + x) as usize] = path;
+            let (x, y) = (tile.x + x, tile.y + y);
+            columns
+                .iter_mut()
+                .zip([x, y, keys::<f32>(scene, x, y)])
+                .for_each(|(column, value)| column.push(value));
         }
-        Self { paths, packets: order.chunks(LANES).map(packet).collect() }
+        for column in &mut columns {
+            let last = column.last().copied().unwrap_or_default();
+            column.resize(order.len() + LANES, last);
+        }
+        Self { paths, columns }
+    }
+
+    /// Pixels.
+    pub(super) fn len(&self) -> usize {
+        self.paths.len()
+    }
+
+    /// (column, row, key) of the pixels from one on, eight in all, each as often as it says.
+    #[inline]
+    pub(super) fn packet(&self, first: usize, times: usize) -> [u32x8; 3] {
+        let lanes = u32x8::from_fn(|i| (i / times) as u32);
+        self.columns.each_ref().map(|column| {
+            let eight = column[first..].first_chunk().copied().unwrap_or_default();
+            u32x8::new(eight).shuffle(lanes)
+        })
     }
 }
 

@@ -2,27 +2,29 @@
 
 use bumpalo::{Bump, collections::Vec as BumpVec};
 
-use super::rows::reserve;
+use super::rows::{Octants, Rows, gather, reserve};
 use crate::geometry::RayLanes;
 use crate::simd::{LANES, Real, Vec3x8, compress, f32x8, transpose, u32x8, vector3};
 
-/// Columns in the order in which the rays were asked for.
+/// Rows in the order in which the rays were asked for.
 pub(super) struct Connections<'a> {
-    /// Origin, direction, end.
-    rays: [BumpVec<'a, f32>; 7],
+    /// Origin, direction, end; slot of the vertex.
+    rays: Rows<'a>,
     /// Red, green and blue, and nothing.
     light: BumpVec<'a, [f32; 4]>,
-    /// Slot of the vertex.
-    slot: BumpVec<'a, u32>,
+    octants: Octants<'a>,
+    /// The rays in the order in which they are traced.
+    order: BumpVec<'a, u32>,
     pub(super) len: usize,
 }
 
 impl<'a> Connections<'a> {
     pub(super) fn new(arena: &'a Bump) -> Self {
         Self {
-            rays: std::array::from_fn(|_| BumpVec::new_in(arena)),
+            rays: BumpVec::new_in(arena),
             light: BumpVec::new_in(arena),
-            slot: BumpVec::new_in(arena),
+            octants: Octants::new(arena),
+            order: BumpVec::new_in(arena),
             len: 0,
         }
     }
@@ -31,11 +33,8 @@ impl<'a> Connections<'a> {
     pub(super) fn clear(&mut self, most: usize) {
         self.len = 0;
         // A packet is written whole, wherever it begins.
-        for column in &mut self.rays {
-            reserve(column, most + LANES, 0.0);
-        }
+        reserve(&mut self.rays, most + LANES, f32x8::zero());
         reserve(&mut self.light, most + LANES, [0.0; 4]);
-        reserve(&mut self.slot, most + LANES, 0);
     }
 
     /// Appends the `lanes` of a packet.
@@ -47,51 +46,48 @@ impl<'a> Connections<'a> {
         radiance: Vec3x8,
         slots: u32x8,
     ) {
-        let lanes = lanes as u8;
-        let Self { rays: [ox, oy, oz, dx, dy, dz, end], light, slot, len } = self;
-        let chosen = |values: f32x8| f32x8::from_bits(compress(values.to_bits(), lanes));
-        let append = |column: &mut [f32], values: f32x8| {
-            column[*len..*len + LANES].copy_from_slice(&chosen(values).to_array());
-        };
-        append(ox, org.x);
-        append(oy, org.y);
-        append(oz, org.z);
-        append(dx, dir.x);
-        append(dy, dir.y);
-        append(dz, dir.z);
-        append(end, t_far);
+        let Self { rays, light, len, .. } = self;
+        let chosen = |values: f32x8| f32x8::from_bits(compress(values.to_bits(), lanes as u8));
+        let slots = f32x8::from_bits(slots);
+        let rows = transpose([org.x, org.y, org.z, dir.x, dir.y, dir.z, t_far, slots].map(chosen));
+        rays[*len..*len + LANES].copy_from_slice(&rows);
         let (zero, [r, g, b]) = (f32x8::zero(), [radiance.x, radiance.y, radiance.z].map(chosen));
         let rows = transpose([r, g, b, zero, zero, zero, zero, zero]);
         for (light, row) in light[*len..*len + LANES].iter_mut().zip(rows) {
             let [r, g, b, nothing, ..] = row.to_array();
             *light = [r, g, b, nothing];
         }
-        slot[*len..*len + LANES].copy_from_slice(&compress(slots, lanes).to_array());
         *len += lanes.count_ones() as usize;
     }
 
-    /// The packet that starts at a ray.
-    #[inline]
-    pub(super) fn rays(&self, first: usize) -> RayLanes<f32x8> {
-        let column = |k: usize| f32x8::new(self.rays[k][first..].first_chunk().copied().unwrap_or_default());
-        RayLanes::new(
-            vector3(column(0), column(1), column(2)),
-            vector3(column(3), column(4), column(5)),
-            f32x8::zero(),
-            column(6),
-        )
+    /// No more rays are asked for: those into one octant are traced together, whichever light they go to.
+    pub(super) fn order_by_octant(&mut self) {
+        let Self { rays, octants, order, len, .. } = self;
+        order.clear();
+        order.extend_from_slice(&octants.order(rays[..*len].iter())[..*len]);
+        let last = order.last().copied().unwrap_or_default();
+        reserve(order, *len, last);
     }
 
-    /// What a ray would have brought is nothing.
+    /// The packet that starts at a place in the order.
     #[inline]
-    pub(super) fn block(&mut self, ray: usize) {
-        self.light[ray] = [0.0; 4];
+    pub(super) fn rays(&self, first: usize) -> RayLanes<f32x8> {
+        let numbers: [u32; LANES] = self.order[first..].first_chunk().copied().unwrap_or_default();
+        let [ox, oy, oz, dx, dy, dz, t_far, _] = gather(&self.rays, &numbers);
+        RayLanes::new(vector3(ox, oy, oz), vector3(dx, dy, dz), f32x8::zero(), t_far)
+    }
+
+    /// What the ray at a place in the order would have brought is nothing.
+    #[inline]
+    pub(super) fn block(&mut self, place: usize) {
+        self.light[self.order[place] as usize] = [0.0; 4];
     }
 
     /// Slots and light, each slot's rays in the order in which they were asked for.
     #[inline]
     pub(super) fn iter(&self) -> impl Iterator<Item = (usize, &[f32; 4])> {
-        self.slot[..self.len].iter().map(|&slot| slot as usize).zip(&self.light)
+        let slot = |row: &f32x8| row.lane(7).to_bits() as usize;
+        self.rays[..self.len].iter().map(slot).zip(&self.light)
     }
 }
 
@@ -112,6 +108,7 @@ mod tests {
         connections.push(0b0000_0001, (zero, light(2.0), numbers), light(10.0), u32x8::splat(8));
         connections.push(0b0000_0110, (zero, light(2.0), numbers), light(10.0), u32x8::splat(3));
         assert_eq!(connections.len, 6);
+        connections.order_by_octant();
         let rays = connections.rays(0);
         assert_eq!([0, 1, 2, 4, 5].map(|i| rays.t_far.lane(i)), [2.0, 5.0, 7.0, 1.0, 2.0]);
         assert_eq!(rays.dir.lane(5), glam::Vec3::splat(4.0));

@@ -1,11 +1,12 @@
 //! A picture while it is being made: what threads add to, and what anybody may look at meanwhile.
 //!
-//! A tile is behind a lock, which a thread takes for as long as it adds one sample. In between, whoever wants
+//! A tile is behind a lock, which a thread takes for as long as it adds some samples. In between, whoever wants
 //! to keep what there is copies it, tile by tile; tiles may have different numbers of samples then, each of
 //! them whole. Threads go through the picture in passes that end at 1, 2, 4, 8 … samples, so that a picture
 //! that is stopped early has no holes, and no tile has less than half the samples of another.
 
 use std::{
+    ops::Range,
     sync::{
         Mutex, MutexGuard, PoisonError,
         atomic::{AtomicU64, AtomicUsize, Ordering},
@@ -34,6 +35,10 @@ use crate::{
 /// Side of a tile in pixels: a thousand paths, whose columns stay in a core's second-level cache.
 pub(super) const TILE: u32 = 32;
 
+/// Samples of a pixel that are taken at once, at most: neighbours in the order of paths, as their rays are in the scene,
+/// they meet the same boxes and the same triangles.
+const TOGETHER: u32 = 16;
+
 /// What is to be rendered of a scene, and how well.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Plan {
@@ -49,7 +54,7 @@ pub struct Plan {
 pub struct Watch<'a> {
     /// Is called from the threads, now and then.
     pub progress: &'a (dyn Fn(Progress) + Sync),
-    /// Is asked before each sample of each tile; after a `true` nothing more is begun.
+    /// Is asked before a tile takes its next samples, which are 16 at most; after a `true` nothing more is begun.
     pub stop: &'a (dyn Fn() -> bool + Sync),
 }
 
@@ -296,6 +301,12 @@ fn passes(samples: u32) -> impl Iterator<Item = u32> {
     ends.chain((samples > 0).then_some(samples))
 }
 
+/// How many samples are taken at once, from `first` on and before `end`.
+fn together(first: u32, end: u32) -> u32 {
+    let aligned = first.trailing_zeros().min(TOGETHER.ilog2());
+    1 << (end - first).ilog2().min(aligned)
+}
+
 /// A thread at a tile, for one pass.
 pub(super) struct Visit<'a> {
     cell: &'a Cell,
@@ -307,20 +318,29 @@ pub(super) struct Visit<'a> {
 }
 
 impl Visit<'_> {
-    /// The next sample that the tile needs, if this pass has one for it.
-    pub(super) fn next(&self) -> Option<u32> {
+    /// The next samples that the tile needs, if this pass has some for it: a power of two of them, from a multiple of
+    /// it on, so that they are of one block.
+    pub(super) fn next(&self) -> Option<Range<u32>> {
         let film = &lock(&self.cell.state).film;
         let done = film.is_done(self.until, self.frame.plan.target_error);
-        (!done && !(self.watch.stop)()).then_some(film.samples.end)
+        let first = film.samples.end;
+        (!done && !(self.watch.stop)()).then(|| first..first + together(first, self.until))
     }
 
-    /// Adds one sample of every pixel, and what it took.
-    pub(super) fn finish(&self, mut statistics: Statistics, add: impl FnOnce(&mut TileFilm)) {
+    /// Adds samples of every pixel, one after the other, and what they took.
+    pub(super) fn finish(
+        &self,
+        samples: Range<u32>,
+        mut statistics: Statistics,
+        add: impl Fn(&mut TileFilm, u32),
+    ) {
         let start = Instant::now();
-        let pixels = self.cell.tile.len() as u64;
+        let pixels = self.cell.tile.len() as u64 * samples.len() as u64;
         let mut state = lock(&self.cell.state);
-        add(&mut state.film);
-        state.film.finish_sample();
+        for sample in samples {
+            add(&mut state.film, sample);
+            state.film.finish_sample();
+        }
         statistics.spend(Stage::Add, start);
         state.statistics.merge(&statistics);
         state.statistics.samples += pixels;
@@ -337,6 +357,7 @@ impl Visit<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::film::sums::BLOCK;
 
     #[test]
     fn passes_double_and_end_where_they_should() {
@@ -346,5 +367,17 @@ mod tests {
         assert_eq!(ends(3), [1, 2, 3]);
         assert_eq!(ends(16), [1, 2, 4, 8, 16]);
         assert_eq!(ends(u32::MAX).len(), 33);
+    }
+
+    #[test]
+    fn samples_that_are_taken_at_once_are_of_one_block() {
+        for first in 0..70 {
+            for end in first + 1..100 {
+                let count = together(first, end);
+                assert!(count.is_power_of_two() && count <= end - first, "{first} {end}");
+                assert_eq!(first / BLOCK, (first + count - 1) / BLOCK, "{first} {end}");
+            }
+        }
+        assert_eq!([(0, 1), (1, 2), (2, 4), (4, 8), (8, 16), (16, 64)].map(|(a, b)| together(a, b)), [1, 1, 2, 4, 8, 16]);
     }
 }

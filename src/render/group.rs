@@ -129,7 +129,7 @@ mod tests {
         };
         group.add(0, one);
         group.shadow(0, all, (zero, zero, one), zero);
-        group.next(0, all, (zero, zero), &Path::start(u32x8::splat(1), 0));
+        group.next(0, all, (zero, zero), &Path::start(u32x8::splat(1), u32x8::splat(0)));
         let said: Vec<usize> = (0..16).filter(|&slot| out.added[slot] != [0.0; 4]).collect();
         assert_eq!(said, [3, 9]);
         assert_eq!(out.connections.len, 2);

@@ -23,13 +23,13 @@ pub(super) struct Path<R: Real> {
     pub(super) key: R::Bits,
     /// Vertices before this one; the same for all paths of a round.
     pub(super) depth: u32,
-    /// Sample of the pixel; the same for all paths of a round.
-    pub(super) sample: u32,
+    /// Samples of their pixels.
+    pub(super) sample: R::Bits,
 }
 
 impl<R: Real> Path<R> {
     /// A path that starts at the camera.
-    pub(super) fn start(key: R::Bits, sample: u32) -> Self {
+    pub(super) fn start(key: R::Bits, sample: R::Bits) -> Self {
         let (one, infinite) = (R::one(), R::splat(f32::INFINITY));
         Self { beta: Vector3 { x: one, y: one, z: one }, pdf: infinite, eta2: one, key, depth: 0, sample }
     }

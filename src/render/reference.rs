@@ -26,15 +26,21 @@ type Segment = (Vector3<f32>, Vector3<f32>, f32);
 /// Renders samples of a tile, for as long as the visit has any.
 pub(super) fn render<I: Integrator>(scene: &Scene, integrator: &I, tile: &Tile, visit: &Visit<'_>) {
     let mut traversal = Traversal::new(());
-    while let Some(sample) = visit.next() {
+    while let Some(samples) = visit.next() {
         let mut statistics = Statistics::default();
-        let pixel = |pixel: u32| {
-            let place = (tile.x + pixel % tile.width, tile.y + pixel / tile.width);
-            self::sample(scene, integrator, place, sample, &mut traversal, &mut statistics)
-        };
-        let pixels: Vec<_> = (0..tile.len() as u32).map(pixel).collect();
-        visit.finish(statistics, |film| {
-            for (pixel, (sums, weight)) in pixels.iter().enumerate() {
+        let first = samples.start;
+        let all: Vec<Vec<_>> = samples
+            .clone()
+            .map(|sample| {
+                let pixel = |pixel: u32| {
+                    let place = (tile.x + pixel % tile.width, tile.y + pixel / tile.width);
+                    self::sample(scene, integrator, place, sample, &mut traversal, &mut statistics)
+                };
+                (0..tile.len() as u32).map(pixel).collect()
+            })
+            .collect();
+        visit.finish(samples, statistics, |film, sample| {
+            for (pixel, (sums, weight)) in all[(sample - first) as usize].iter().enumerate() {
                 film.add(pixel, *weight, |c| sums[c]);
             }
         });

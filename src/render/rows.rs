@@ -5,7 +5,7 @@
 
 use bumpalo::{Bump, collections::Vec as BumpVec};
 
-use super::integrator::Path;
+use super::{integrator::Path, sort::Sorter};
 use crate::geometry::{Hit, PrimitiveId, RayLanes};
 use crate::simd::{
     Bits, Eights, LANES, MOST, Mask, Real, Vector3, compress, f32x8, transpose, u32x8, vector3,
@@ -24,7 +24,7 @@ pub(super) fn reserve<T: Clone>(slots: &mut BumpVec<T>, len: usize, fresh: T) {
 
 /// Number k of each of these slots in register k.
 #[inline]
-fn gather<R: Real>(rows: &[f32x8], slots: &[u32]) -> [R; 8] {
+pub(super) fn gather<R: Real>(rows: &[f32x8], slots: &[u32]) -> [R; 8] {
     R::from_rows(|i| rows[slots[i] as usize].to_array())
 }
 
@@ -60,12 +60,13 @@ pub(super) struct Packet<R: Real> {
 pub(super) struct Paths<'a> {
     /// Origin, direction, end; key.
     rays: Rows<'a>,
-    /// β, density, η²; pixel.
+    /// β, density, η²; pixel, sample.
     worth: Rows<'a>,
     /// For each slot the place of its rows.
     places: BumpVec<'a, u32>,
-    /// For each slot its octant and its place, while they are ordered.
-    octants: BumpVec<'a, (u8, u32)>,
+    octants: Octants<'a>,
+    /// What was in `places`, while they are ordered.
+    before: BumpVec<'a, u32>,
     /// Slots in use.
     pub(super) len: usize,
 }
@@ -73,8 +74,8 @@ pub(super) struct Paths<'a> {
 impl<'a> Paths<'a> {
     pub(super) fn new(arena: &'a Bump) -> Self {
         let rows = || BumpVec::new_in(arena);
-        let (places, octants) = (BumpVec::new_in(arena), BumpVec::new_in(arena));
-        Self { rays: rows(), worth: rows(), places, octants, len: 0 }
+        let (places, before) = (BumpVec::new_in(arena), BumpVec::new_in(arena));
+        Self { rays: rows(), worth: rows(), places, octants: Octants::new(arena), before, len: 0 }
     }
 
     /// Makes room for so many paths.
@@ -89,24 +90,31 @@ impl<'a> Paths<'a> {
         let Packet { org, dir, t_far, path, pixel } = packet;
         let key = R::from_bits(path.key);
         scatter(&mut self.rays, at, &[org.x, org.y, org.z, dir.x, dir.y, dir.z, *t_far, key]);
-        let (beta, pixel) = (path.beta, R::from_bits(*pixel));
-        scatter(&mut self.worth, at, &[beta.x, beta.y, beta.z, path.pdf, path.eta2, pixel, pixel, pixel]);
+        let (beta, pixel, sample) = (path.beta, R::from_bits(*pixel), R::from_bits(path.sample));
+        scatter(&mut self.worth, at, &[beta.x, beta.y, beta.z, path.pdf, path.eta2, pixel, sample, sample]);
     }
 
     /// The paths in some slots.
     #[inline]
-    pub(super) fn packet<R: Real>(&self, slots: &[u32; MOST], depth: u32, sample: u32) -> Packet<R> {
+    pub(super) fn packet<R: Real>(&self, slots: &[u32; MOST], depth: u32) -> Packet<R> {
         let mut places = [0; MOST];
         for (place, &slot) in places[..R::LANES].iter_mut().zip(slots) {
             *place = self.places[slot as usize];
         }
         let [ox, oy, oz, dx, dy, dz, t_far, key] = gather(&self.rays, &places);
-        let [r, g, b, pdf, eta2, pixel, ..] = gather(&self.worth, &places);
+        let [r, g, b, pdf, eta2, pixel, sample, _] = gather(&self.worth, &places);
         Packet {
             org: vector3(ox, oy, oz),
             dir: vector3(dx, dy, dz),
             t_far,
-            path: Path { beta: vector3(r, g, b), pdf, eta2, key: key.to_bits(), depth, sample },
+            path: Path {
+                beta: vector3(r, g, b),
+                pdf,
+                eta2,
+                key: key.to_bits(),
+                depth,
+                sample: sample.to_bits(),
+            },
             pixel: pixel.to_bits(),
         }
     }
@@ -147,27 +155,39 @@ impl<'a> Paths<'a> {
         self.places[self.len..self.len + LANES].fill(last);
     }
 
-    /// Gives neighbouring slots to paths that point into the same octant, in order within each. Packets of rays
-    /// that point into one octant meet less of a scene, and each box of it with fewer operations.
+    /// Gives neighbouring slots to paths that point into the same octant, in order within each.
     pub(super) fn order_by_octant(&mut self) {
-        let Self { rays, places, octants, len, .. } = self;
-        let mut starts = [0; 8];
-        octants.clear();
-        octants.extend(places[..*len].iter().map(|&place| {
-            let octant = (rays[place as usize].lt(f32x8::zero()).to_bitmask() >> 3) as u8 & 7;
-            starts[octant as usize] += 1;
-            (octant, place)
-        }));
-        let mut start = 0;
-        for count in &mut starts {
-            start += std::mem::replace(count, start);
-        }
-        for &(octant, place) in octants.iter() {
-            let slot = &mut starts[octant as usize % 8];
-            places[*slot] = place;
-            *slot += 1;
+        let Self { rays, places, octants, before, len, .. } = self;
+        before.clear();
+        before.extend_from_slice(&places[..*len]);
+        let order = octants.order(before.iter().map(|&place| &rays[place as usize]));
+        for (place, &slot) in places[..*len].iter_mut().zip(order) {
+            *place = before[slot as usize];
         }
         self.fill_up();
+    }
+}
+
+/// Rays by the octant that they point into: packets of one octant meet less of a scene, and each box of it with
+/// fewer operations.
+pub(super) struct Octants<'a> {
+    keys: BumpVec<'a, u32>,
+    sorter: Sorter<'a>,
+}
+
+impl<'a> Octants<'a> {
+    pub(super) fn new(arena: &'a Bump) -> Self {
+        Self { keys: BumpVec::new_in(arena), sorter: Sorter::new(arena, 8) }
+    }
+
+    /// The numbers of rays, ordered by octant and within each as they come, and perhaps more behind them. A ray is a
+    /// row: origin, direction, and what else there is.
+    pub(super) fn order<'r>(&mut self, rays: impl Iterator<Item = &'r f32x8>) -> &[u32] {
+        let Self { keys, sorter } = self;
+        keys.clear();
+        keys.extend(rays.map(|row| row.lt(f32x8::zero()).to_bitmask() >> 3 & 7));
+        sorter.sort(keys);
+        sorter.order()
     }
 }
 
@@ -228,7 +248,7 @@ mod tests {
             eta2: number(11),
             key: R::Bits::from_fn(|i| 0xff80_0001 + from + i as u32),
             depth: 3,
-            sample: 5,
+            sample: R::Bits::from_fn(|i| 0x7fa0_0001 + from + i as u32),
         };
         Packet {
             org: vector3(number(0), number(1), number(2)),
@@ -249,7 +269,7 @@ mod tests {
         paths.store(&slots, &stored);
         paths.store(&[2, 4], &packet::<f32x8>(50));
         paths.keep(&[true; 24]);
-        let same = paths.packet::<f32x8>(&fill(&slots), 3, 5);
+        let same = paths.packet::<f32x8>(&fill(&slots), 3);
         assert_eq!(format!("{:?}", same.path), format!("{:?}", stored.path));
         assert_eq!(same.org.lane(1), stored.org.lane(1));
         assert_eq!((same.dir.lane(7), same.t_far.lane(7)), (stored.dir.lane(7), 806.0));
@@ -273,8 +293,8 @@ mod tests {
         paths.store(&slots[..15], &packet::<f32x16>(1));
         paths.keep(&[true; 24]);
         for half in [0, 8] {
-            let eight = paths.packet::<f32x8>(&fill(&slots[half..15.min(half + 8)]), 3, 5);
-            let whole = paths.packet::<f32x16>(&fill(&slots[..15]), 3, 5);
+            let eight = paths.packet::<f32x8>(&fill(&slots[half..15.min(half + 8)]), 3);
+            let whole = paths.packet::<f32x16>(&fill(&slots[..15]), 3);
             for lane in 0..8 {
                 let number = half + lane;
                 assert_eq!(eight.org.lane(lane), whole.org.lane(number), "{number}");

@@ -23,7 +23,6 @@ pub(super) struct Shading<'s, 'a, I> {
     pub(super) sums: &'s mut [Quad],
     pub(super) ends: Option<&'s mut Ends>,
     pub(super) depth: u32,
-    pub(super) sample: u32,
     /// The key of those that met nothing.
     pub(super) miss: u32,
 }
@@ -40,9 +39,9 @@ impl<I: Integrator> Shading<'_, '_, I> {
 
     #[inline]
     fn in_lanes<R: Eights>(&mut self, key: u32, slots: &[u32]) {
-        let Self { scene, integrator, paths, hits, out, layers, sums, ends, depth, sample, miss } = self;
+        let Self { scene, integrator, paths, hits, out, layers, sums, ends, depth, miss } = self;
         let at = fill(slots);
-        let Packet::<R> { org, dir, path, pixel, .. } = paths.packet(&at, *depth, *sample);
+        let Packet::<R> { org, dir, path, pixel, .. } = paths.packet(&at, *depth);
         let mut group = Group::<R> { slots: at, count: slots.len(), pixel, out, ends: ends.as_deref_mut() };
         if key == *miss {
             integrator.miss(scene, &path, (org, dir), &mut group);

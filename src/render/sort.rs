@@ -1,12 +1,16 @@
-//! Hits sorted by material, so that each material is shaded eight or sixteen at a time.
+//! Slots sorted by a small key: hits by material, so that each material is shaded eight or sixteen at a time, and
+//! rays by octant, so that packets of them meet less of a scene.
 
 use bumpalo::{Bump, collections::Vec as BumpVec};
 
-use crate::simd::{LANES, MOST};
+use crate::simd::{Bits, LANES, MOST, Mask, compress, u32x8};
 
-/// A stable counting sort of slots by a small key.
+/// Up to so many keys, each has a pass over all slots.
+const FEW: usize = 16;
+
+/// A stable sort of slots by a small key.
 pub(super) struct Sorter<'a> {
-    /// Slots, grouped by key, ascending within a group.
+    /// Slots, grouped by key, ascending within a group; a packet behind them may hold anything.
     order: BumpVec<'a, u32>,
     /// Where each key's run ends.
     ends: BumpVec<'a, u32>,
@@ -22,6 +26,34 @@ impl<'a> Sorter<'a> {
     /// Groups the slots 0..`keys.len()` by their keys.
     pub(super) fn sort(&mut self, keys: &[u32]) {
         self.ends.clear();
+        // A packet is written whole, wherever it begins.
+        let room = keys.len() + LANES;
+        if self.order.len() < room {
+            self.order.resize(room, 0);
+        }
+        if self.keys <= FEW { self.sort_by_passes(keys) } else { self.sort_by_counting(keys) }
+    }
+
+    /// The slots of one key after the other: a slot waits for none before it, as it would for a counter.
+    fn sort_by_passes(&mut self, keys: &[u32]) {
+        let (whole, rest) = keys.as_chunks::<LANES>();
+        let mut last = [u32::MAX; LANES];
+        last[..rest.len()].copy_from_slice(rest);
+        let mut end = 0;
+        for key in 0..self.keys as u32 {
+            let mut slots = u32x8::from_fn(|i| i as u32);
+            for keys in whole.iter().chain([&last]) {
+                let lanes = u32x8::new(*keys).equal(u32x8::splat(key)).to_bitmask();
+                let chosen = compress(slots, lanes as u8);
+                self.order[end..end + LANES].copy_from_slice(&chosen.to_array());
+                end += lanes.count_ones() as usize;
+                slots = slots.wrapping_add(u32x8::splat(LANES as u32));
+            }
+            self.ends.push(end as u32);
+        }
+    }
+
+    fn sort_by_counting(&mut self, keys: &[u32]) {
         self.ends.resize(self.keys, 0);
         for &key in keys {
             self.ends[key as usize] += 1;
@@ -31,12 +63,16 @@ impl<'a> Sorter<'a> {
         for end in &mut self.ends {
             start += std::mem::replace(end, start);
         }
-        self.order.resize(keys.len(), 0);
         for (slot, &key) in keys.iter().enumerate() {
             let place = &mut self.ends[key as usize];
             self.order[*place as usize] = slot as u32;
             *place += 1;
         }
+    }
+
+    /// The slots that were sorted last, and perhaps more behind them.
+    pub(super) fn order(&self) -> &[u32] {
+        &self.order
     }
 
     /// Calls `group` with (key, at most [`MOST`] slots of that key) until every slot has been seen.
@@ -78,9 +114,18 @@ mod tests {
     #[test]
     fn groups_hold_every_slot_once_and_one_key_each() {
         let arena = Bump::new();
-        let keys: Vec<u32> = (0..203u32).map(|i| i.wrapping_mul(2_654_435_761) >> 29).collect();
+        // By passes and by counting, whole packets and not, and more before than after.
+        for (bits, most) in [(3, FEW), (4, FEW), (5, 32), (3, 32)] {
+            let mut sorter = Sorter::new(&arena, most);
+            for len in [203, 0, 64, 1, 7, 9] {
+                groups(&mut sorter, bits, len);
+            }
+        }
+    }
+
+    fn groups(sorter: &mut Sorter, bits: u32, len: u32) {
+        let keys: Vec<u32> = (0..len).map(|i| i.wrapping_mul(2_654_435_761) >> (32 - bits)).collect();
         let mut sorted = Vec::new();
-        let mut sorter = Sorter::new(&arena, 8);
         for _ in 0..2 {
             sorter.sort(&keys);
             sorted.clear();

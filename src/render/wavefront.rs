@@ -4,7 +4,7 @@
 //! eight or sixteen, trace the shadow rays, add, compact. What a group has to say goes to places that belong to the
 //! slot, so the order in which groups are shaded can't be seen in the picture: sorting changes no bit.
 
-use std::time::Instant;
+use std::{ops::Range, time::Instant};
 
 use bumpalo::{Bump, collections::Vec as BumpVec};
 
@@ -12,7 +12,7 @@ use super::Settings;
 use super::camera_rays::{self, Pixels};
 use super::census::{Census, Probe};
 use super::connections::Connections;
-use super::frame::Visit;
+use super::frame::{TILE, Visit};
 use super::group::{Group, Outputs};
 use super::integrator::{Integrator, Path};
 use super::layers::Layers;
@@ -89,26 +89,25 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
 
     /// Samples of a tile, for as long as the visit has any.
     pub(super) fn render(&mut self, tile: &Tile, visit: &Visit<'_>) {
-        let Some(mut sample) = visit.next() else { return };
+        let Some(mut samples) = visit.next() else { return };
         let pixels = Pixels::new(self.scene, tile);
         loop {
             let mut statistics = Statistics::default();
-            let start = Instant::now();
-            self.start(&pixels, sample);
-            statistics.spend(Stage::Shade, start);
-            self.run(sample, &mut statistics);
-            visit.finish(statistics, |film| self.deliver(&pixels, film));
+            self.take(&pixels, &samples, &mut statistics);
+            visit.finish(samples.clone(), statistics, |film, sample| {
+                self.deliver(&pixels, film, (sample - samples.start) as usize, samples.len());
+            });
             match visit.next() {
-                Some(next) => sample = next,
+                Some(next) => samples = next,
                 None => return,
             }
         }
     }
 
-    /// Adds what the paths have brought to the film.
-    fn deliver(&self, pixels: &Pixels, film: &mut TileFilm) {
+    /// Adds what one of so many samples has brought to the film.
+    fn deliver(&self, pixels: &Pixels, film: &mut TileFilm, sample: usize, count: usize) {
         for (pixel, &path) in pixels.paths.iter().enumerate() {
-            let path = path as usize;
+            let path = path as usize * count + sample;
             film.add_row(pixel, self.weights[path], &self.sums[path * self.quads..][..self.quads]);
         }
     }
@@ -116,22 +115,34 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     /// What one sample of the pixel (x, y) brings to each channel, finite or not.
     pub(super) fn sample(&mut self, (x, y): (u32, u32), sample: u32) -> Vec<f32> {
         let pixels = Pixels::new(self.scene, &Tile { x, y, width: 1, height: 1 });
-        self.start(&pixels, sample);
-        self.run(sample, &mut Statistics::default());
+        self.take(&pixels, &(sample..sample + 1), &mut Statistics::default());
         self.sums.iter().flatten().copied().take(self.channels).collect()
     }
 
     /// What one sample of a tile does.
     pub(super) fn census(&mut self, tile: &Tile, sample: u32) -> Census {
         self.probe = Some(Box::new(Probe::new()));
-        self.start(&Pixels::new(self.scene, tile), sample);
-        self.run(sample, &mut Statistics::default());
+        self.take(&Pixels::new(self.scene, tile), &(sample..sample + 1), &mut Statistics::default());
         self.probe.take().map_or_else(Census::default, |probe| probe.finish())
     }
 
-    /// One path from each pixel.
-    fn start(&mut self, pixels: &Pixels, sample: u32) {
-        let len = pixels.paths.len();
+    /// Samples of each pixel, as many paths at once as there are pixels in a tile: the more samples, the fewer pixels.
+    fn take(&mut self, pixels: &Pixels, samples: &Range<u32>, statistics: &mut Statistics) {
+        let start = Instant::now();
+        self.clear(pixels.len() * samples.len());
+        statistics.spend(Stage::Shade, start);
+        let side = TILE as usize;
+        let some = side * side / samples.len();
+        for first in (0..pixels.len()).step_by(some) {
+            let start = Instant::now();
+            self.start(pixels, first..pixels.len().min(first + some), samples);
+            statistics.spend(Stage::Shade, start);
+            self.run(statistics);
+        }
+    }
+
+    /// Nothing yet, for so many paths.
+    fn clear(&mut self, len: usize) {
         // Layers write whole rows, in the first round.
         let blank = self.layers.is_none() || self.integrator.begins();
         if blank {
@@ -143,15 +154,23 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             self.sums.chunks_exact_mut(self.quads).for_each(|row| row[one / 4][one % 4] = 1.0);
         }
         self.weights.clear();
+    }
+
+    /// A path from each of some pixels for each of the samples; those of a pixel are neighbours.
+    fn start(&mut self, pixels: &Pixels, some: Range<usize>, samples: &Range<u32>) {
+        let count = samples.len();
+        let (before, len) = (some.start * count, some.len() * count);
         self.paths.reserve(len);
-        let slots = u32x8::from_fn(|i| i as u32);
-        for (packet, &(x, y, key)) in pixels.packets.iter().enumerate() {
+        for first in (0..len).step_by(LANES) {
+            let slots = u32x8::from_fn(|i| (first + i) as u32);
+            let [x, y, key] = pixels.packet(some.start + first / count, count);
+            let sample = (slots & u32x8::splat(count as u32 - 1)).wrapping_add(u32x8::splat(samples.start));
             let path = Path::start(key, sample);
             let (ray, weight) = camera_rays::rays::<f32x8>(self.scene, x, y, &path);
             self.weights.extend_from_slice(&weight.to_array());
-            let pixel = slots.wrapping_add(u32x8::splat((packet * LANES) as u32));
+            let pixel = slots.wrapping_add(u32x8::splat(before as u32));
             let packet = Packet { org: ray.org, dir: ray.dir, t_far: ray.t_far, path, pixel };
-            self.paths.store(&pixel.to_array(), &packet);
+            self.paths.store(&slots.to_array(), &packet);
         }
         reserve(&mut self.out.alive, len, false);
         let alive = &mut self.out.alive[..len.next_multiple_of(LANES)];
@@ -160,16 +179,16 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
         self.paths.keep(alive);
     }
 
-    /// All rounds of a sample.
-    fn run(&mut self, sample: u32, statistics: &mut Statistics) {
+    /// All rounds of the paths that have been started.
+    fn run(&mut self, statistics: &mut Statistics) {
         let mut depth = 0;
         while self.paths.len > 0 {
             self.out.clear(self.paths.len, self.integrator.shadow_rays(self.scene));
             if depth == 0 && self.integrator.begins() {
-                self.begin(sample, statistics);
+                self.begin(statistics);
             } else {
                 self.trace(depth, statistics);
-                self.shade(depth, sample, statistics);
+                self.shade(depth, statistics);
                 if let Some(probe) = &mut self.probe {
                     probe.ends(&self.paths, &self.hits, &self.out.alive, self.out.branches);
                 }
@@ -202,18 +221,18 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     }
 
     /// The first round of paths that begin without a camera.
-    fn begin(&mut self, sample: u32, statistics: &mut Statistics) {
+    fn begin(&mut self, statistics: &mut Statistics) {
         let Self { scene, integrator, paths, out, .. } = self;
         for first in (0..paths.len as u32).step_by(LANES) {
             let slots = std::array::from_fn(|i| (first + i as u32).min(paths.len as u32 - 1));
             let count = (paths.len - first as usize).min(LANES);
             statistics.shade_lanes.add(count as u32);
-            let Packet::<f32x8> { path, pixel, .. } = paths.packet(&slots, 0, sample);
+            let Packet::<f32x8> { path, pixel, .. } = paths.packet(&slots, 0);
             integrator.begin(scene, &path, &mut Group { slots, count, pixel, out, ends: None });
         }
     }
 
-    fn shade(&mut self, depth: u32, sample: u32, statistics: &mut Statistics) {
+    fn shade(&mut self, depth: u32, statistics: &mut Statistics) {
         let start = Instant::now();
         let Self { scene, integrator, layers, paths, hits, keys, sorter, out, sums, probe, .. } = self;
         // What the camera sees besides is said in the first round.
@@ -236,19 +255,8 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
         let ends = probe.as_deref_mut().map(|probe| &mut probe.census.ends);
         let start = statistics.spend(Stage::Sort, start);
         let lanes = &mut statistics.shade_lanes;
-        let mut shading = Shading {
-            scene,
-            integrator: *integrator,
-            paths,
-            hits,
-            out,
-            layers,
-            sums,
-            ends,
-            depth,
-            sample,
-            miss,
-        };
+        let mut shading =
+            Shading { scene, integrator: *integrator, paths, hits, out, layers, sums, ends, depth, miss };
         let group = |key: u32, slots: &[u32]| {
             lanes.add(slots.len() as u32);
             shading.group(key, slots);
@@ -265,6 +273,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     fn connect(&mut self, statistics: &mut Statistics) {
         let start = Instant::now();
         statistics.shadow_rays += self.out.connections.len as u64;
+        self.out.connections.order_by_octant();
         let Self { scene, out: Outputs { connections, .. }, route, tracer, probe, .. } = self;
         statistics.trace_lanes += match probe {
             None => trace::occluded(scene, connections, *route, tracer),
