@@ -12,7 +12,7 @@ use super::Settings;
 use super::camera_rays::{self, Pixels};
 use super::census::{Census, Probe};
 use super::connections::Connections;
-use super::frame::{TILE, Visit};
+use super::frame::Visit;
 use super::group::{Group, Outputs};
 use super::integrator::{Integrator, Path};
 use super::layers::Layers;
@@ -29,6 +29,10 @@ use crate::film::{
 };
 use crate::geometry::PrimitiveId;
 use crate::simd::{Bits, LANES, f32x8, u32x8};
+
+/// Paths in flight, at most: the more there are, the more of them meet the same things and the fuller are groups, as long
+/// as their rows stay in a core's second-level cache.
+const PATHS: usize = 4096;
 
 /// What one thread needs to render tiles, one after the other.
 pub(super) struct Wavefront<'a, I> {
@@ -126,13 +130,12 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
         self.probe.take().map_or_else(Census::default, |probe| probe.finish())
     }
 
-    /// Samples of each pixel, as many paths at once as there are pixels in a tile: the more samples, the fewer pixels.
+    /// Samples of each pixel: the more of them, the fewer pixels at once.
     fn take(&mut self, pixels: &Pixels, samples: &Range<u32>, statistics: &mut Statistics) {
         let start = Instant::now();
         self.clear(pixels.len() * samples.len());
         statistics.spend(Stage::Shade, start);
-        let side = TILE as usize;
-        let some = side * side / samples.len();
+        let some = PATHS / samples.len();
         for first in (0..pixels.len()).step_by(some) {
             let start = Instant::now();
             self.start(pixels, first..pixels.len().min(first + some), samples);
