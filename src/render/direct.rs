@@ -7,7 +7,7 @@
 //! Each light is sampled once, the BSDF once, and both estimates are combined by the power heuristic
 //! \[VG95\]. Mirrors and glass show lights, nothing else.
 
-use super::integrator::{Integrator, Line, Outgoing, Path, add_rgb};
+use super::integrator::{Integrator, Line, Outgoing, Path};
 use super::vertex::{Sampled, Vertex, environment};
 use crate::compile::Scene;
 use crate::simd::Real;
@@ -25,14 +25,14 @@ impl Integrator for Direct {
 
     fn miss<R: Real>(&self, scene: &Scene, path: &Path<R>, ray: Line<R>, out: &mut impl Outgoing<R>) {
         if path.depth > 0 || !self.hide_emitters {
-            add_rgb(out, environment(scene, path, ray, Sampled::All));
+            out.add_rgb(environment(scene, path, ray, Sampled::All));
         }
     }
 
     fn shade<R: Real>(&self, scene: &Scene, vertex: &Vertex<'_, R>, out: &mut impl Outgoing<R>) {
         let path = &vertex.path;
         if path.depth > 0 || !self.hide_emitters {
-            add_rgb(out, vertex.emitted(scene, Sampled::All));
+            out.add_rgb(vertex.emitted(scene, Sampled::All));
         }
         if path.depth > 0 {
             return;

@@ -7,7 +7,7 @@ use super::connections::Connections;
 use super::integrator::{End, Outgoing, Path};
 use super::rows::{Packet, Paths, reserve};
 use crate::film::sums::Quad;
-use crate::simd::{Eights, LANES, MOST, Mask, Vector3, u32x8};
+use crate::simd::{Eights, LANES, MOST, Mask, Real, Vector3, f32x8, transpose, u32x8};
 
 /// What the groups of a round have said, by slot.
 pub(super) struct Outputs<'a> {
@@ -52,6 +52,22 @@ impl<R: Eights> Outgoing<R> for Group<'_, '_, R> {
         }
         for (i, &slot) in self.slots[..self.count].iter().enumerate() {
             self.out.added[slot as usize * self.out.quads + channel / 4][channel % 4] = value.lane(i);
+        }
+    }
+
+    #[inline]
+    fn add_rgb(&mut self, color: Vector3<R>) {
+        let dark = [color.x, color.y, color.z].map(|c| c.equal(R::zero()));
+        if (!(dark[0] & dark[1] & dark[2])).none() {
+            return;
+        }
+        let quads = self.out.quads;
+        for (i, slots) in self.slots[..self.count].chunks(LANES).enumerate() {
+            let ([r, g, b], zero) = ([color.x, color.y, color.z].map(|c| c.eight(i)), f32x8::zero());
+            let rows = transpose([r, g, b, zero, zero, zero, zero, zero]);
+            for (row, &slot) in rows.iter().zip(slots) {
+                self.out.added[slot as usize * quads][..3].copy_from_slice(&row.to_array()[..3]);
+            }
         }
     }
 
@@ -104,7 +120,7 @@ mod tests {
 
     use super::super::rows::fill;
     use super::*;
-    use crate::simd::{Bits, Mask8, Real, Vec3x8, f32x8};
+    use crate::simd::{Bits, Mask8, Vec3x8, vector3};
 
     #[test]
     fn lanes_beyond_the_count_say_nothing() {
@@ -127,11 +143,13 @@ mod tests {
             out: &mut out,
             ends: None,
         };
-        group.add(0, one);
+        group.add(3, one);
+        group.add_rgb(vector3(zero.x, f32x8::from_fn(|i| i as f32), one));
         group.shadow(0, all, (zero, zero, one), zero);
         group.next(0, all, (zero, zero), &Path::start(u32x8::splat(1), u32x8::splat(0)));
         let said: Vec<usize> = (0..16).filter(|&slot| out.added[slot] != [0.0; 4]).collect();
         assert_eq!(said, [3, 9]);
+        assert_eq!((out.added[3], out.added[9]), ([0.0, 0.0, 1.0, 1.0], [0.0, 1.0, 1.0, 1.0]));
         assert_eq!(out.connections.len, 2);
         let alive: Vec<usize> = (0..16).filter(|&slot| out.alive[slot]).collect();
         assert_eq!(alive, [3, 9]);

@@ -58,6 +58,14 @@ pub(super) trait Outgoing<R: Real> {
     /// The vertex adds `value` to a channel of the pixel. At most once a channel.
     fn add(&mut self, channel: usize, value: R);
 
+    /// The same for the channels R, G and B, which are the first.
+    #[inline]
+    fn add_rgb(&mut self, color: Vector3<R>) {
+        self.add(0, color.x);
+        self.add(1, color.y);
+        self.add(2, color.z);
+    }
+
     /// The vertex adds `radiance` if nothing is between `org` and `org + dir·t_far`. `index` numbers the
     /// shadow rays of a vertex from 0.
     fn shadow(
@@ -83,14 +91,6 @@ pub(super) enum End {
     Depth,
     /// It lost at Russian roulette.
     Roulette,
-}
-
-/// Adds a colour to the channels R, G and B.
-#[inline]
-pub(super) fn add_rgb<R: Real>(out: &mut impl Outgoing<R>, color: Vector3<R>) {
-    out.add(0, color.x);
-    out.add(1, color.y);
-    out.add(2, color.z);
 }
 
 /// How light is transported, vertex by vertex.

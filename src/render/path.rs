@@ -4,7 +4,7 @@
 //! BSDF; a light that is found both ways is weighted by the power heuristic \[VG95\]. Russian roulette goes
 //! by the throughput without the squared index of refraction that glass puts into it.
 
-use super::integrator::{End, Integrator, Line, Outgoing, Path, add_rgb};
+use super::integrator::{End, Integrator, Line, Outgoing, Path};
 use super::vertex::{Sampled, Vertex, environment};
 use crate::compile::Scene;
 use crate::simd::{Mask, Real};
@@ -31,14 +31,14 @@ impl Integrator for PathTracer {
 
     fn miss<R: Real>(&self, scene: &Scene, path: &Path<R>, ray: Line<R>, out: &mut impl Outgoing<R>) {
         if path.depth > 0 || !self.hide_emitters {
-            add_rgb(out, environment(scene, path, ray, Sampled::One));
+            out.add_rgb(environment(scene, path, ray, Sampled::One));
         }
     }
 
     fn shade<R: Real>(&self, scene: &Scene, vertex: &Vertex<'_, R>, out: &mut impl Outgoing<R>) {
         let path = &vertex.path;
         if path.depth > 0 || !self.hide_emitters {
-            add_rgb(out, vertex.emitted(scene, Sampled::One));
+            out.add_rgb(vertex.emitted(scene, Sampled::One));
         }
         if path.depth + 1 >= self.max_depth {
             out.end(End::Depth, R::Mask::splat(true));

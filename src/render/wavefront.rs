@@ -293,6 +293,13 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             let added = &mut added[slot * lit];
             *added = std::array::from_fn(|c| added[c] + light[c]);
         }
+        if lit == 1 {
+            for (slot, values) in added.iter().enumerate() {
+                let sums = &mut sums[paths.pixel(slot) * *quads];
+                *sums = std::array::from_fn(|c| sums[c] + values[c]);
+            }
+            return;
+        }
         for (slot, values) in added.chunks_exact(lit).enumerate() {
             let sums = &mut sums[paths.pixel(slot) * *quads..][..lit];
             for (sums, values) in sums.iter_mut().zip(values) {

@@ -1,6 +1,6 @@
 //! Whitted's recursion \[Whi80\]: direct light at smooth surfaces, both branches at mirrors and glass.
 
-use super::integrator::{Integrator, Line, Outgoing, Path, add_rgb};
+use super::integrator::{Integrator, Line, Outgoing, Path};
 use super::vertex::{Sampled, Vertex, environment};
 use crate::compile::Scene;
 use crate::math::Sampler;
@@ -22,12 +22,12 @@ impl Integrator for Whitted {
     }
 
     fn miss<R: Real>(&self, scene: &Scene, path: &Path<R>, ray: Line<R>, out: &mut impl Outgoing<R>) {
-        add_rgb(out, environment(scene, path, ray, Sampled::All));
+        out.add_rgb(environment(scene, path, ray, Sampled::All));
     }
 
     fn shade<R: Real>(&self, scene: &Scene, vertex: &Vertex<'_, R>, out: &mut impl Outgoing<R>) {
         let path = &vertex.path;
-        add_rgb(out, vertex.emitted(scene, Sampled::All));
+        out.add_rgb(vertex.emitted(scene, Sampled::All));
         if path.depth + 1 >= self.max_depth {
             return;
         }
