@@ -268,9 +268,23 @@ impl Leaves for Primitives {
         hits: &mut [Hitx16; 8],
     ) -> u32 {
         let every = Mask16::splat(true);
-        let (Some(block), Some(pencils)) = (self.triangles.get(first as usize / BLOCK), pencils) else {
+        let Some(block) = self.triangles.get(first as usize / BLOCK) else {
             for bundle in (0..8).filter(|bundle| mask >> bundle & 1 != 0) {
                 self.intersect_bundle::<ANY>(first, count, rays[bundle], every, &mut hits[bundle]);
+            }
+            return mask.count_ones() * count;
+        };
+        let Some(pencils) = pencils else {
+            let first = first as usize;
+            for slot in first..first + count as usize {
+                let (lane, id) = (slot % BLOCK, &self.triangle_ids[slot]);
+                let triangle = block.splat::<f32x16>(lane);
+                for bundle in (0..8).filter(|bundle| mask >> bundle & 1 != 0) {
+                    let ray = rays[bundle];
+                    let aspect = triangle.aspect(ray.org);
+                    let seen = (&aspect, aspect.margin(triangle.edges, ray.margin));
+                    block.intersect::<ANY, f32x16>((lane, id), seen, ray, every, &mut hits[bundle]);
+                }
             }
             return mask.count_ones() * count;
         };

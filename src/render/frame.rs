@@ -378,6 +378,9 @@ mod tests {
                 assert_eq!(first / BLOCK, (first + count - 1) / BLOCK, "{first} {end}");
             }
         }
-        assert_eq!([(0, 1), (1, 2), (2, 4), (4, 8), (8, 16), (16, 64)].map(|(a, b)| together(a, b)), [1, 1, 2, 4, 8, 16]);
+        assert_eq!(
+            [(0, 1), (1, 2), (2, 4), (4, 8), (8, 16), (16, 64)].map(|(a, b)| together(a, b)),
+            [1, 1, 2, 4, 8, 16]
+        );
     }
 }
