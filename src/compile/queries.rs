@@ -97,12 +97,6 @@ impl Scene {
         self.extent
     }
 
-    /// Does it take chance to sample one light: to choose it, or a direction towards it?
-    #[inline]
-    pub(crate) fn draws_lights(&self) -> bool {
-        !matches!(self.lights.as_slice(), [light] if !light.is_drawn())
-    }
-
     /// The material of what was hit; `u` is the hit's.
     #[inline]
     pub fn material(&self, primitive: PrimitiveId, u: f32) -> MaterialId {

@@ -76,10 +76,21 @@ const LENS: u32 = u32::MAX;
 /// filter say, and what they count in their pixels.
 #[inline]
 pub(super) fn rays<R: Real>(scene: &Scene, x: R::Bits, y: R::Bits, path: &Path<R>) -> (RayLanes<R>, R) {
-    let sampler = Sampler::<R>::new(path.key, path.sample);
-    let ((u, v), weight) = scene.filter.sample(sampler.pair(0));
-    let at = |pixel: R::Bits, offset: R| R::from_int(pixel) + offset;
-    (scene.camera.rays(at(x, u), at(y, v), || sampler.pair(LENS)), weight)
+    let (point, weight) = points(scene, x, y, path);
+    (through(scene, point, path), weight)
+}
+
+/// Where on the film those rays are, in pixels, and what they count.
+#[inline]
+pub(super) fn points<R: Real>(scene: &Scene, x: R::Bits, y: R::Bits, path: &Path<R>) -> ((R, R), R) {
+    let ((u, v), weight) = scene.filter.sample(path.on_film());
+    ((R::from_int(x) + u, R::from_int(y) + v), weight)
+}
+
+/// Rays through points of the film.
+#[inline]
+pub(super) fn through<R: Real>(scene: &Scene, (x, y): (R, R), path: &Path<R>) -> RayLanes<R> {
+    scene.camera.rays(x, y, || Sampler::<R>::new(path.key, path.sample).pair(LENS))
 }
 
 /// Keys of the paths through pixels (x, y) of the film.

@@ -37,8 +37,16 @@ impl<R: Real> Path<R> {
     /// Random numbers: the `index`-th of at most `count` pairs that the integrator uses at a vertex.
     #[inline]
     pub(super) fn random(&self, count: u32, index: u32) -> (R, R) {
+        let [pair] = self.randoms(count, [index]);
+        pair
+    }
+
+    /// Several of these pairs, in less time than one after the other.
+    #[inline]
+    pub(super) fn randoms<const N: usize>(&self, count: u32, indices: [u32; N]) -> [(R, R); N] {
         // Pair 0 is the position in the pixel: `on_film`.
-        Sampler::<R>::new(self.key, self.sample).pair(1 + self.depth * count + index)
+        let pairs = indices.map(|index| 1 + self.depth * count + index);
+        Sampler::<R>::new(self.key, self.sample).pairs(pairs)
     }
 }
 

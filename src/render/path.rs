@@ -44,17 +44,21 @@ impl Integrator for PathTracer {
             out.end(End::Depth, R::Mask::splat(true));
             return;
         }
+        let survives_by_chance = path.depth + 1 >= self.rr_depth;
         let unused = (R::zero(), R::zero());
-        let light = if scene.draws_lights() { path.random(PAIRS, 0) } else { unused };
+        let ([light, direction], (lobe, roulette)) =
+            match (vertex.is_smooth(), survives_by_chance || vertex.chooses_lobes()) {
+                (true, true) => {
+                    let [light, direction, lobe] = path.randoms(PAIRS, [0, 1, 2]);
+                    ([light, direction], lobe)
+                }
+                (true, false) => (path.randoms(PAIRS, [0, 1]), unused),
+                (false, true) => ([unused; 2], path.random(PAIRS, 2)),
+                (false, false) => ([unused; 2], unused),
+            };
         if let Some(c) = vertex.connect_one(scene, light) {
             out.shadow(0, c.lanes, c.ray, c.radiance);
         }
-        let survives_by_chance = path.depth + 1 >= self.rr_depth;
-        let (lobe, roulette) = match survives_by_chance || vertex.chooses_lobes() {
-            true => path.random(PAIRS, 2),
-            false => unused,
-        };
-        let direction = if vertex.is_smooth() { path.random(PAIRS, 1) } else { unused };
         let (mut lanes, ray, mut next) = vertex.scatter(lobe, direction);
         if next.depth + 1 >= self.max_depth {
             let may_find = scene.sight.may_find(ray);

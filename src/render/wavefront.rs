@@ -50,6 +50,8 @@ pub(super) struct Wavefront<'a, I> {
     keys: BumpVec<'a, u32>,
     sorter: Sorter<'a>,
     out: Outputs<'a>,
+    /// Where the first rays of packets are on the film.
+    points: BumpVec<'a, (f32x8, f32x8)>,
     /// What the sample of each pixel counts, in the order of the first paths.
     weights: BumpVec<'a, f32>,
     /// What a pixel's paths have brought, pixel after pixel, each in a row as the film has them.
@@ -84,6 +86,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
                 alive: BumpVec::new_in(arena),
                 branches: integrator.branches(),
             },
+            points: BumpVec::new_in(arena),
             weights: BumpVec::new_in(arena),
             sums: BumpVec::new_in(arena),
             quads: quads(channels),
@@ -164,13 +167,21 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
         let count = samples.len();
         let (before, len) = (some.start * count, some.len() * count);
         self.paths.reserve(len);
-        for first in (0..len).step_by(LANES) {
+        self.points.clear();
+        let packets = (0..len).step_by(LANES).map(|first| {
             let slots = u32x8::from_fn(|i| (first + i) as u32);
-            let [x, y, key] = pixels.packet(some.start + first / count, count);
             let sample = (slots & u32x8::splat(count as u32 - 1)).wrapping_add(u32x8::splat(samples.start));
-            let path = Path::start(key, sample);
-            let (ray, weight) = camera_rays::rays::<f32x8>(self.scene, x, y, &path);
+            let [x, y, key] = pixels.packet(some.start + first / count, count);
+            (slots, (x, y), Path::<f32x8>::start(key, sample))
+        });
+        // By itself: random numbers are long chains of short steps, of which several packets' go on at once.
+        for (_, (x, y), path) in packets.clone() {
+            let (point, weight) = camera_rays::points(self.scene, x, y, &path);
+            self.points.push(point);
             self.weights.extend_from_slice(&weight.to_array());
+        }
+        for ((slots, _, path), &point) in packets.zip(&self.points) {
+            let ray = camera_rays::through(self.scene, point, &path);
             let pixel = slots.wrapping_add(u32x8::splat(before as u32));
             let packet = Packet { org: ray.org, dir: ray.dir, t_far: ray.t_far, path, pixel };
             self.paths.store(&slots.to_array(), &packet);
