@@ -45,6 +45,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("clap", &["cli/"]),
     ("clap_complete", &["cli/"]),
     ("clap_mangen", &["cli/"]),
+    ("console", &["cli/"]),
     ("ctrlc", &["cli/"]),
     ("exr", &["picture/"]),
     ("flate2", &["load/serialized.rs", "load/serialized/", "picture/exr_zip.rs"]),

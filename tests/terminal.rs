@@ -7,7 +7,11 @@
 
 mod program;
 
-use std::{fs, process::Command};
+use std::{
+    fs,
+    io::{Read, Write},
+    process::{Command, Stdio},
+};
 
 use program::{folder, packlight, path, stderr, stdout};
 
@@ -34,6 +38,64 @@ fn on_columns(columns: usize, words: &str, no_color: &str) -> Option<String> {
         return None;
     };
     Some(stdout(&output).replace('\r', ""))
+}
+
+/// What a terminal of 80 columns has on its screen after all that was sent to it: of what a bar and its end need, no more.
+fn screen(sent: &str) -> Vec<String> {
+    let (mut lines, mut row, mut column) = (vec![Vec::new()], 0, 0);
+    let mut rest = sent.chars();
+    while let Some(c) = rest.next() {
+        match c {
+            '\r' => column = 0,
+            '\n' => row += 1,
+            '\x1b' => {
+                let order: String = rest.by_ref().skip(1).take_while(|c| !c.is_ascii_alphabetic()).collect();
+                if order == "2" {
+                    lines[row] = Vec::new();
+                }
+            }
+            _ => {
+                if column == COLUMNS {
+                    (row, column) = (row + 1, 0);
+                }
+                lines.resize(lines.len().max(row + 1), Vec::new());
+                let length = lines[row].len().max(column + 1);
+                lines[row].resize(length, ' ');
+                lines[row][column] = c;
+                column += 1;
+            }
+        }
+        lines.resize(lines.len().max(row + 1), Vec::new());
+    }
+    lines.into_iter().map(String::from_iter).collect()
+}
+
+#[test]
+fn no_bar_is_left_of_a_render_that_was_stopped() {
+    let picture = path(&folder("terminal/stopped"), "a.exr");
+    let line =
+        format!("stty rows 50 cols {COLUMNS}; {PROGRAM} render scenes/cornell.xml --spp 100000 -o {picture}");
+    let mut command = Command::new("script");
+    command.args(["-qec", &line, "/dev/null"]).current_dir(env!("CARGO_MANIFEST_DIR"));
+    command.stdin(Stdio::piped()).stdout(Stdio::piped());
+    let Ok(mut child) = command.spawn() else { return println!("skipped: there is no `script`") };
+    let mut out = child.stdout.take().expect("a pipe");
+    let (mut sent, mut bytes, mut bars) = (Vec::new(), [0; 1024], 0);
+    while let Ok(count @ 1..) = out.read(&mut bytes) {
+        sent.extend(&bytes[..count]);
+        bars +=
+            usize::from(sent.ends_with(b"left") || String::from_utf8_lossy(&bytes[..count]).contains("left"));
+        if bars == 3 {
+            // What is pressed is Ctrl-C, once.
+            bars += 1;
+            child.stdin.as_mut().expect("a pipe").write_all(b"\x03").expect("it listens");
+        }
+    }
+    child.wait().expect("it ends");
+    let sent = String::from_utf8_lossy(&sent);
+    assert!(sent.contains("^C") && sent.contains("stopped: "), "{sent}");
+    let screen = screen(&sent);
+    assert!(screen.iter().all(|line| !line.contains("rendering [")), "{screen:#?}");
 }
 
 /// A scene with a slip.

@@ -1,5 +1,7 @@
 //! A bar on a terminal; silence in a pipe.
 
+mod screen;
+
 use std::{
     fmt,
     time::{Duration, Instant},
@@ -8,9 +10,13 @@ use std::{
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use crate::render::Progress;
+use screen::Screen;
 
 /// A bar that is wider than the terminal is taken off the screen in part.
 const TEMPLATE: &str = "rendering [{bar:16}] {percent:>3} %  {elapsed} elapsed, {left} left";
+
+/// Times a second that it is drawn.
+const HERTZ: u8 = 20;
 
 /// Progress of a render on stderr.
 pub(super) struct Bar(ProgressBar);
@@ -18,7 +24,11 @@ pub(super) struct Bar(ProgressBar);
 impl Bar {
     /// Whatever is left to do, it ends at the deadline.
     pub(super) fn new(quiet: bool, deadline: Option<Instant>) -> Self {
-        let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+        let screen = Screen::new();
+        let target = match quiet || !screen.is_there() {
+            true => ProgressDrawTarget::hidden(),
+            false => ProgressDrawTarget::term_like_with_hz(Box::new(screen), HERTZ),
+        };
         let left = move |state: &ProgressState, text: &mut dyn fmt::Write| {
             let left = sooner(state.eta(), deadline, Instant::now());
             // A bar that can't be written is not shown.

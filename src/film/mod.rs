@@ -33,18 +33,50 @@ impl Film {
 
     /// Puts the means of a tile in its place.
     pub fn place(&mut self, tile: &Tile, total: &Sums) {
-        let (width, columns) = (self.picture.width as usize, tile.width as usize);
-        let first = tile.y as usize * width + tile.x as usize;
-        for (c, channel) in self.picture.channels.iter_mut().enumerate() {
-            let below = channel.samples[first..].chunks_mut(width);
-            for (y, row) in below.take(tile.height as usize).enumerate() {
-                total.means(c, y * columns, &mut row[..columns]);
+        let rows = self.picture.height;
+        self.bands(rows).into_iter().for_each(|mut band| band.place(tile, total));
+    }
+
+    /// The film in bands of so many rows, from top to bottom, which may be filled at the same time.
+    pub fn bands(&mut self, rows: u32) -> Vec<Band<'_>> {
+        let Picture { width, height, channels, .. } = &mut self.picture;
+        let band = |first| Band { first, width: *width as usize, planes: Vec::with_capacity(channels.len()) };
+        let mut bands: Vec<_> = (0..*height).step_by(rows as usize).map(band).collect();
+        let pixels = *width as usize * rows as usize;
+        for channel in channels {
+            for (band, plane) in bands.iter_mut().zip(channel.samples.chunks_mut(pixels)) {
+                band.planes.push(plane);
             }
         }
+        bands
     }
 
     /// The picture.
     pub fn develop(self) -> Picture {
         self.picture
+    }
+}
+
+/// Some rows of a film.
+#[derive(Debug)]
+pub struct Band<'a> {
+    /// The first of them.
+    first: u32,
+    /// Columns.
+    width: usize,
+    /// Channel after channel.
+    planes: Vec<&'a mut [f32]>,
+}
+
+impl Band<'_> {
+    /// Puts the means of a tile in its place, which is in the band.
+    pub fn place(&mut self, tile: &Tile, total: &Sums) {
+        let columns = tile.width as usize;
+        let first = (tile.y - self.first) as usize * self.width + tile.x as usize;
+        for (c, plane) in self.planes.iter_mut().enumerate() {
+            for (y, row) in plane[first..].chunks_mut(self.width).take(tile.height as usize).enumerate() {
+                total.means(c, y * columns, &mut row[..columns]);
+            }
+        }
     }
 }

@@ -27,8 +27,7 @@ pub type Quad = [f32; 4];
 /// touch; were its channels in planes, their lines would drive each other out of the cache.
 pub fn quads(channels: usize) -> usize {
     let numbers = channels + 1;
-    // More than one go by twos.
-    if numbers <= 4 { 1 } else { numbers.next_multiple_of(8) / 4 }
+    numbers.div_ceil(4)
 }
 
 /// Sums over the pixels of a tile, of some samples.
@@ -42,7 +41,8 @@ pub struct Sums {
 }
 
 impl Sums {
-    pub(super) fn new(pixels: usize, channels: usize) -> Self {
+    /// Of no samples.
+    pub fn new(pixels: usize, channels: usize) -> Self {
         Self { rows: vec![[0.0; 4]; pixels * quads(channels)], channels, counts: vec![0; pixels] }
     }
 
@@ -114,17 +114,11 @@ impl Sums {
     #[must_use]
     pub(super) fn add_row<const FIRST: bool>(&mut self, pixel: usize, weight: f32, row: &[Quad]) -> bool {
         let sums = &mut self.rows[pixel * row.len()..][..row.len()];
-        let added = match (sums, row) {
-            ([sums], [row]) => add_quad::<FIRST>(sums, row, weight),
-            (sums, row) => {
-                let (sums, row) =
-                    (sums.as_flattened_mut().as_chunks_mut().0, row.as_flattened().as_chunks().0);
-                // Of six layers and three colours, in registers.
-                match (<&mut [_; 2]>::try_from(&mut *sums), <&[_; 2]>::try_from(row)) {
-                    (Ok(sums), Ok(row)) => add_eights::<FIRST>(sums, row, weight),
-                    _ => add_eights::<FIRST>(sums, row, weight),
-                }
-            }
+        // Of three colours, and of six layers besides, in registers.
+        let added = match row.len() {
+            1 => add_quads::<1, FIRST>(sums, row, weight),
+            5 => add_quads::<5, FIRST>(sums, row, weight),
+            _ => add_some::<FIRST>(sums, row, weight),
         };
         self.counts[pixel] = u32::from(added) + if FIRST { 0 } else { self.counts[pixel] };
         added
@@ -166,24 +160,34 @@ fn is_kept(numbers: f32x8) -> bool {
     numbers.abs().le(f32x8::splat(GREATEST)).all()
 }
 
-#[inline]
-fn add_quad<const FIRST: bool>(sums: &mut Quad, row: &Quad, weight: f32) -> bool {
-    let more = row.map(|number| number * weight);
-    let kept = is_kept(f32x8::of_halves(more, [0.0; 4]));
-    if kept {
-        *sums = std::array::from_fn(|i| if FIRST { 0.0 + more[i] } else { sums[i] + more[i] });
+/// A row of a length that is known.
+#[inline(always)]
+fn add_quads<const N: usize, const FIRST: bool>(sums: &mut [Quad], row: &[Quad], weight: f32) -> bool {
+    match (<&mut [Quad; N]>::try_from(sums), <&[Quad; N]>::try_from(row)) {
+        (Ok(sums), Ok(row)) => add_some::<FIRST>(sums, row, weight),
+        _ => false,
     }
-    kept
 }
 
 #[inline(always)]
-fn add_eights<const FIRST: bool>(sums: &mut [[f32; LANES]], row: &[[f32; LANES]], weight: f32) -> bool {
-    let weight = f32x8::splat(weight);
-    let kept = row.iter().all(|&eight| is_kept(f32x8::new(eight) * weight));
+fn add_some<const FIRST: bool>(sums: &mut [Quad], row: &[Quad], weight: f32) -> bool {
+    let (sums, last_sums) = sums.as_flattened_mut().as_chunks_mut::<LANES>();
+    let (row, last) = row.as_flattened().as_chunks::<LANES>();
+    let (last_sums, last) = (last_sums.as_chunks_mut::<4>().0, last.as_chunks::<4>().0);
+    let weights = f32x8::splat(weight);
+    let more = |row: &[f32; LANES]| f32x8::new(*row) * weights;
+    let last_more = |row: &Quad| row.map(|number| number * weight);
+    let mut kept = true;
+    row.iter().for_each(|row| kept &= is_kept(more(row)));
+    last.iter().for_each(|row| kept &= is_kept(f32x8::of_halves(last_more(row), [0.0; 4])));
     if kept {
-        for (sums, &eight) in sums.iter_mut().zip(row) {
+        for (sums, row) in sums.iter_mut().zip(row) {
             let before = if FIRST { f32x8::zero() } else { f32x8::new(*sums) };
-            *sums = (before + f32x8::new(eight) * weight).to_array();
+            *sums = (before + more(row)).to_array();
+        }
+        for (sums, row) in last_sums.iter_mut().zip(last) {
+            let more = last_more(row);
+            *sums = std::array::from_fn(|i| if FIRST { 0.0 + more[i] } else { sums[i] + more[i] });
         }
     }
     kept
@@ -208,20 +212,18 @@ impl Node {
     }
 }
 
-/// Puts a node behind those it follows, and joins neighbours for as long as there are any. Returns sums that are
-/// not needed any more, if there are any: their memory is.
-pub(super) fn push(nodes: &mut Vec<Node>, mut node: Node) -> Option<Sums> {
-    let mut free = None;
+/// Puts a node behind those it follows, and joins neighbours for as long as there are any. Sums that are not needed
+/// any more become `spare`: their memory is.
+pub(super) fn push(nodes: &mut Vec<Node>, mut node: Node, spare: &mut Vec<Sums>) {
     while let Some(left) =
         nodes.pop_if(|left| left.level == node.level && left.index % 2 == 0 && left.index + 1 == node.index)
     {
         let mut sums = left.sums;
         sums.absorb(&node.sums);
-        free = Some(node.sums);
+        spare.push(node.sums);
         node = Node { level: node.level + 1, index: node.index / 2, sums };
     }
     nodes.push(node);
-    free
 }
 
 #[cfg(test)]
@@ -236,7 +238,7 @@ mod tests {
 
     fn pushed(blocks: impl IntoIterator<Item = u32>) -> Vec<Node> {
         let mut nodes = Vec::new();
-        blocks.into_iter().for_each(|index| drop(push(&mut nodes, block(index))));
+        blocks.into_iter().for_each(|index| push(&mut nodes, block(index), &mut Vec::new()));
         nodes
     }
 
@@ -258,7 +260,7 @@ mod tests {
             let whole = pushed(0..count);
             for cut in 0..=count {
                 let mut joined = pushed(0..cut);
-                pushed(cut..count).into_iter().for_each(|node| drop(push(&mut joined, node)));
+                pushed(cut..count).into_iter().for_each(|node| push(&mut joined, node, &mut Vec::new()));
                 assert_eq!(joined, whole, "{cut} of {count}");
             }
         }

@@ -50,14 +50,16 @@ pub struct TileFilm {
     pub samples: Range<u32>,
     /// Sums of finished blocks.
     pub nodes: Vec<Node>,
-    /// Sums of the block that is not finished.
-    pub open: Sums,
+    /// Sums of the block that is not finished; `None` where one ends.
+    pub open: Option<Sums>,
     /// How much the blocks differ, where somebody asks.
     pub spread: Option<Spread>,
     /// Samples kept out.
     pub invalid: u64,
     /// Pixel of the tile and sample number of the first one kept out, by pixel, then sample.
     pub first_invalid: Option<(u32, u32)>,
+    pixels: usize,
+    channels: usize,
 }
 
 impl TileFilm {
@@ -66,21 +68,32 @@ impl TileFilm {
         Self {
             samples: first..first,
             nodes: Vec::new(),
-            open: Sums::new(pixels, channels),
+            open: None,
             spread: None,
             invalid: 0,
             first_invalid: None,
+            pixels,
+            channels,
         }
     }
 
     /// Pixels.
     pub fn pixels(&self) -> usize {
-        self.open.pixels()
+        self.pixels
     }
 
     /// Channels.
     pub fn channels(&self) -> usize {
-        self.open.channels()
+        self.channels
+    }
+
+    /// Begins a block, if the next sample does, in memory that is left over, if there is any: what a tile before has
+    /// just used is still near.
+    pub fn begin_sample(&mut self, spare: &mut Vec<Sums>) {
+        if self.open.is_none() {
+            let fits = |sums: &Sums| (sums.pixels(), sums.channels()) == (self.pixels, self.channels);
+            self.open = spare.pop().filter(fits).map(Sums::cleared);
+        }
     }
 
     /// Adds to a pixel its next sample, of a weight: `value(c)` for each channel c. Each pixel gets one
@@ -90,15 +103,20 @@ impl TileFilm {
             self.keep_out(pixel as u32);
             return;
         }
-        self.open.add(pixel, weight, value);
+        self.open().add(pixel, weight, value);
+    }
+
+    #[inline]
+    fn open(&mut self) -> &mut Sums {
+        self.open.get_or_insert_with(|| Sums::new(self.pixels, self.channels))
     }
 
     /// The same of a row of [`sums::quads`]: the channels, then 1, then zeros.
     #[inline]
     pub fn add_row(&mut self, pixel: usize, weight: f32, row: &[Quad]) {
         let added = match self.samples.end.is_multiple_of(BLOCK) {
-            true => self.open.add_row::<true>(pixel, weight, row),
-            false => self.open.add_row::<false>(pixel, weight, row),
+            true => self.open().add_row::<true>(pixel, weight, row),
+            false => self.open().add_row::<false>(pixel, weight, row),
         };
         if !added {
             self.keep_out(pixel as u32);
@@ -112,19 +130,25 @@ impl TileFilm {
         self.first_invalid = Some(self.first_invalid.map_or(place, |first| first.min(place)));
     }
 
-    /// Every pixel has had its sample.
-    pub fn finish_sample(&mut self) {
+    /// Every pixel has had its sample. What is not needed any more becomes `spare`.
+    pub fn finish_sample(&mut self, spare: &mut Vec<Sums>) {
+        let sums = self.open.take().unwrap_or_else(|| Sums::new(self.pixels, self.channels));
         self.samples.end += 1;
         if self.samples.end.is_multiple_of(BLOCK) {
-            let (pixels, channels) = (self.pixels(), self.channels());
-            let sums = std::mem::replace(&mut self.open, Sums::new(0, 0));
             if let Some(spread) = &mut self.spread {
                 spread.add(&sums);
             }
             let index = self.samples.end / BLOCK - 1;
-            let free = sums::push(&mut self.nodes, Node { level: 0, index, sums });
-            self.open = free.map_or_else(|| Sums::new(pixels, channels), Sums::cleared);
+            sums::push(&mut self.nodes, Node { level: 0, index, sums }, spare);
+        } else {
+            self.open = Some(sums);
         }
+    }
+
+    /// Takes over what is kept of the block that is not finished: where one ends, nothing.
+    pub fn reopen(&mut self, open: Sums) {
+        let ends = self.samples.end.is_multiple_of(BLOCK) && open.counts().iter().all(|&count| count == 0);
+        self.open = (!ends).then_some(open);
     }
 
     /// Has every sample of a number that is asked for been taken, or has the error become as small as it
@@ -141,7 +165,7 @@ impl TileFilm {
     pub fn append(&mut self, later: Self) {
         debug_assert_eq!(self.samples.end, later.samples.start);
         self.samples.end = later.samples.end;
-        later.nodes.into_iter().for_each(|node| drop(sums::push(&mut self.nodes, node)));
+        later.nodes.into_iter().for_each(|node| sums::push(&mut self.nodes, node, &mut Vec::new()));
         self.open = later.open;
         self.invalid += later.invalid;
         self.first_invalid = self.first_invalid.into_iter().chain(later.first_invalid).min();
@@ -149,14 +173,13 @@ impl TileFilm {
 
     /// All samples together.
     pub fn total(&self) -> Cow<'_, Sums> {
-        if self.nodes.is_empty() {
-            return Cow::Borrowed(&self.open);
-        }
-        let mut parts = self.nodes.iter().map(|node| &node.sums).chain([&self.open]);
-        // There is always the open block.
-        let mut total = parts.next().unwrap_or(&self.open).clone();
-        parts.for_each(|part| total.absorb(part));
-        Cow::Owned(total)
+        let mut parts = self.nodes.iter().map(|node| &node.sums).chain(&self.open);
+        let first =
+            parts.next().map_or_else(|| Cow::Owned(Sums::new(self.pixels, self.channels)), Cow::Borrowed);
+        parts.fold(first, |mut total, part| {
+            total.to_mut().absorb(part);
+            total
+        })
     }
 
     /// What contradicts itself in a film that was not made here, if anything does.
@@ -170,7 +193,7 @@ impl TileFilm {
         if start > end || !start.is_multiple_of(BLOCK) {
             return Some("a tile's samples don't begin with a block");
         }
-        if !self.nodes.iter().all(|node| fits(&node.sums)) {
+        if !self.nodes.iter().map(|node| &node.sums).chain(&self.open).all(fits) {
             return Some("sums are of different sizes");
         }
         let mut next = u64::from(start / BLOCK);
@@ -180,10 +203,11 @@ impl TileFilm {
             }
             next = node.blocks().1;
         }
-        if end.is_multiple_of(BLOCK) && self.open.counts().iter().any(|&count| count > 0) {
+        if end.is_multiple_of(BLOCK) && self.open.is_some() {
             return Some("a block holds samples before its first one");
         }
-        (next != u64::from(end / BLOCK)).then_some("blocks are missing")
+        let open = !end.is_multiple_of(BLOCK);
+        (next != u64::from(end / BLOCK) || open != self.open.is_some()).then_some("blocks are missing")
     }
 }
 
@@ -195,7 +219,7 @@ mod tests {
         let mut film = TileFilm::new(1, 1, first);
         for value in values {
             film.add(0, 1.0, |_| value);
-            film.finish_sample();
+            film.finish_sample(&mut Vec::new());
         }
         film
     }
@@ -209,8 +233,8 @@ mod tests {
 
     #[test]
     fn rows_are_channels_one_by_one() {
-        // One quad, a pair that is filled, and two pairs.
-        for channels in [1, 3, 4, 7, 8, 13] {
+        // One quad, pairs that are filled or not, and quads without a partner.
+        for channels in [1, 3, 4, 7, 8, 13, 16, 18, 19, 24] {
             let (mut rows, mut ones) = (TileFilm::new(9, channels, 0), TileFilm::new(9, channels, 0));
             for sample in 0..20 {
                 let value = |pixel: usize, channel: usize| match (sample, pixel, channel) {
@@ -226,8 +250,8 @@ mod tests {
                     rows.add_row(pixel, weight(pixel), &row);
                     ones.add(pixel, weight(pixel), |c| value(pixel, c));
                 }
-                rows.finish_sample();
-                ones.finish_sample();
+                rows.finish_sample(&mut Vec::new());
+                ones.finish_sample(&mut Vec::new());
             }
             let kept_out = if channels > 2 { (2, Some((2, 7))) } else { (1, Some((2, 7))) };
             assert_eq!((ones.invalid, ones.first_invalid), kept_out);
@@ -260,7 +284,7 @@ mod tests {
         let mut both = |left: f32, right: f32| {
             film.add(0, 1.0, |_| left);
             film.add(1, 1.0, |_| right);
-            film.finish_sample();
+            film.finish_sample(&mut Vec::new());
         };
         both(1.0, 2.0);
         both(1.0, f32::NAN);
@@ -275,7 +299,7 @@ mod tests {
         let mut film = TileFilm::new(1, 1, 0);
         for weight in [1.0, -1.0, 1.0, 1.0] {
             film.add(0, weight, |_| 0.75);
-            film.finish_sample();
+            film.finish_sample(&mut Vec::new());
         }
         assert_eq!(film.total().mean(0, 0), 0.75);
         let mut none = TileFilm::new(1, 1, 0);
@@ -312,6 +336,28 @@ mod tests {
     }
 
     #[test]
+    fn memory_of_other_tiles_shows_nowhere() {
+        let values = |from: u32| (from..from + 50).map(noise).chain([f32::NAN]).chain((0..20).map(noise));
+        let (mut spare, mut kept) = (Vec::new(), 0);
+        for tile in 0..4 {
+            let mut film = TileFilm::new(1, 1, 0);
+            for value in values(tile) {
+                film.begin_sample(&mut spare);
+                film.add(0, 1.0, |_| value);
+                film.finish_sample(&mut spare);
+            }
+            assert_eq!(film, filled(0, values(tile)));
+            kept = spare.len();
+        }
+        assert!(kept > 0);
+        // Another size has no use for it.
+        let mut film = TileFilm::new(2, 3, 0);
+        film.begin_sample(&mut spare);
+        film.finish_sample(&mut spare);
+        assert_eq!(film.defect(), None);
+    }
+
+    #[test]
     fn films_that_contradict_themselves_are_told() {
         let good = filled(0, (0..40).map(noise));
         let wrong = |change: fn(&mut TileFilm)| {
@@ -326,8 +372,9 @@ mod tests {
         assert!(wrong(|film| film.nodes[0].index = 1).is_some());
         assert!(wrong(|film| film.nodes[0].level = 40).is_some());
         assert!(wrong(|film| film.samples.end = 32).is_some());
-        assert!(wrong(|film| film.open = Sums::new(2, 1)).is_some());
-        assert!(wrong(|film| film.open = Sums::new(1, 2)).is_some());
+        assert!(wrong(|film| film.open = None).is_some());
+        assert!(wrong(|film| film.open = Some(Sums::new(2, 1))).is_some());
+        assert!(wrong(|film| film.open = Some(Sums::new(1, 2))).is_some());
         assert!(wrong(|film| *film = TileFilm::new(0, 1, 0)).is_some());
         assert!(wrong(|film| *film = TileFilm::new(1, 0, 0)).is_some());
     }

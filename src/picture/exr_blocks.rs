@@ -7,62 +7,81 @@ use std::io::{Seek, Write};
 
 use exr::{
     block::{
-        UncompressedBlock,
+        BlockIndex, UncompressedBlock,
         chunk::{Chunk, CompressedBlock, CompressedScanLineBlock},
-        write,
+        enumerate_ordered_header_block_indices, write,
         writer::ChunksWriter,
     },
-    image::write::layers::{LayersWriter, WritableLayers},
-    meta::header::Header,
-    prelude::{AnyChannels, Compression, Error, FlatSamples, Image, Layer},
+    meta::{attribute::SampleType, header::Header},
+    prelude::{Compression, Error, f16},
 };
 use rayon::prelude::*;
 
-use super::exr_zip;
+use super::exr_zip::Zip;
 
-/// Blocks for each thread that are held unpacked at a time.
-const AHEAD: usize = 2;
+/// Blocks for each thread that are held packed at a time.
+const AHEAD: usize = 8;
 
-/// Writes an image, on the current rayon pool.
+/// Writes scan lines, on the current rayon pool. `planes` are the channels of the header in its order, row-major.
 ///
 /// # Errors
-/// What the crate says of an image that no file can hold.
-pub(super) fn save(
-    image: &Image<Layer<AnyChannels<FlatSamples>>>,
-    file: impl Write + Seek,
-) -> Result<(), Error> {
-    let headers = image.layer_data.infer_headers(&image.attributes);
-    let layers = image.layer_data.create_writer(&headers);
-    write(file, headers, true, |meta, writer| {
+/// What the crate says of a picture that no file can hold.
+pub(super) fn save(header: Header, planes: &[&[f32]], file: impl Write + Seek) -> Result<(), Error> {
+    write(file, std::iter::once(header).collect(), true, |meta, writer| {
         let headers = &meta.headers;
-        let mut blocks = meta.collect_ordered_block_data(|at| layers.extract_uncompressed_block(headers, at));
-        loop {
-            let some: Vec<_> = blocks.by_ref().take(AHEAD * rayon::current_num_threads()).collect();
-            if some.is_empty() {
-                return Ok(());
-            }
-            let pack = |(number, block)| Ok((number, pack(block, headers)?));
-            let packed: Vec<(usize, Chunk)> = some.into_par_iter().map(pack).collect::<Result<_, Error>>()?;
+        let blocks: Vec<_> = enumerate_ordered_header_block_indices(headers).collect();
+        for some in blocks.chunks(AHEAD * rayon::current_num_threads()) {
+            let pack = |zip: &mut Zip, &(number, at): &(usize, BlockIndex)| {
+                Ok((number, pack(at, headers, planes, zip)?))
+            };
+            let packed: Vec<(usize, Chunk)> =
+                some.par_iter().map_init(Zip::default, pack).collect::<Result<_, Error>>()?;
             for (number, chunk) in packed {
                 writer.write_chunk(number, chunk)?;
             }
         }
+        Ok(())
     })
 }
 
 /// A block of scan lines, packed as its header says.
-fn pack(block: UncompressedBlock, headers: &[Header]) -> Result<Chunk, Error> {
-    let index = block.index;
+fn pack(index: BlockIndex, headers: &[Header], planes: &[&[f32]], zip: &mut Zip) -> Result<Chunk, Error> {
     let header = &headers[index.layer];
+    let data = bytes(index, header, planes);
     // Bytes are as the processor has them, and in the file little-endian.
     let ours = cfg!(target_endian = "little")
         && matches!(header.compression, Compression::ZIP1 | Compression::ZIP16);
     if !ours {
-        return block.compress_to_chunk(headers);
+        return UncompressedBlock { index, data }.compress_to_chunk(headers);
     }
     let y_coordinate = index.pixel_position.y() as i32 + header.own_attributes.layer_position.y();
-    let compressed_pixels_le = exr_zip::pack(&block.data).unwrap_or(block.data);
+    let compressed_pixels_le = zip.pack(&data).unwrap_or(data);
     let compressed_block =
         CompressedBlock::ScanLine(CompressedScanLineBlock { y_coordinate, compressed_pixels_le });
     Ok(Chunk { layer_index: index.layer, compressed_block })
+}
+
+/// Row by row, and in each channel by channel.
+fn bytes(index: BlockIndex, header: &Header, planes: &[&[f32]]) -> Vec<u8> {
+    let (first, size) = (index.pixel_position, index.pixel_size);
+    let mut bytes = vec![0; header.channels.bytes_per_pixel * size.area()];
+    let mut rest = bytes.as_mut_slice();
+    for y in first.y()..first.y() + size.height() {
+        for (channel, plane) in header.channels.list.iter().zip(planes) {
+            let line = &plane[y * header.layer_size.width() + first.x()..][..size.width()];
+            let (place, behind) = rest.split_at_mut(size.width() * channel.sample_type.bytes_per_sample());
+            match channel.sample_type {
+                SampleType::F16 => {
+                    let places = place.as_chunks_mut().0.iter_mut();
+                    places.zip(line).for_each(|(place, &x)| *place = f16::from_f32(x).to_ne_bytes());
+                }
+                SampleType::F32 | SampleType::U32 => {
+                    let places = place.as_chunks_mut().0.iter_mut();
+                    places.zip(line).for_each(|(place, x)| *place = x.to_ne_bytes());
+                }
+            }
+            rest = behind;
+        }
+    }
+    bytes
 }

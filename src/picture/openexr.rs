@@ -7,9 +7,16 @@
 
 use std::io::Cursor;
 
-use exr::prelude::{
-    AnyChannel, AnyChannels, Blocks, Compression, Encoding, Error, FlatSamples, Image, IntegerBounds, Layer,
-    LayerAttributes, LineOrder, MetaData, ReadChannels, ReadLayers, Text, Vec2, f16, read,
+use exr::{
+    meta::{
+        BlockDescription,
+        attribute::{ChannelDescription, SampleType},
+        header::{Header, ImageAttributes},
+    },
+    prelude::{
+        Compression, Error, IntegerBounds, LayerAttributes, LineOrder, MetaData, ReadChannels, ReadLayers,
+        Text, Vec2, read,
+    },
 };
 
 use super::{Channel, Picture, Place, exr_blocks, exr_header, limits};
@@ -66,37 +73,30 @@ pub(super) fn encode(picture: &Picture, style: &ExrStyle) -> Result<Vec<u8>, Str
         let name = Text::new_or_none(&channel.name)
             .filter(|_| !channel.name.is_empty())
             .ok_or_else(|| format!("`{}` is no name for a channel of an EXR file", channel.name))?;
-        let samples = match style.half && is_colour(&channel.name) {
-            true => FlatSamples::F16(channel.samples.iter().map(|&x| f16::from_f32(x)).collect()),
-            false => FlatSamples::F32(channel.samples.clone()),
-        };
-        // A hint for compressions that lose something: what is no colour is not seen by an eye.
-        channels.push(AnyChannel {
+        let half = style.half && is_colour(&channel.name);
+        let description = ChannelDescription {
+            name,
+            sample_type: if half { SampleType::F16 } else { SampleType::F32 },
+            // A hint for compressions that lose something: what is no colour is not seen by an eye.
             quantize_linearly: !is_colour(&channel.name),
-            ..AnyChannel::new(name, samples)
-        });
+            sampling: Vec2(1, 1),
+        };
+        channels.push((description, channel.samples.as_slice()));
     }
+    channels.sort_unstable_by(|(a, _), (b, _)| a.name.cmp(&b.name));
+    let (channels, planes): (Vec<_>, Vec<_>) = channels.into_iter().unzip();
     let Picture { width, height, place, .. } = *picture;
     let place = place.unwrap_or(Place { x: 0, y: 0, width, height });
-    let layer = Layer::new(
-        Vec2(width as usize, height as usize),
-        LayerAttributes {
+    let whole = Vec2(place.width as usize, place.height as usize);
+    let header = Header::new(Text::default(), Vec2(width as usize, height as usize), channels.into())
+        .with_encoding(style.compression.into(), BlockDescription::ScanLines, LineOrder::Increasing)
+        .with_shared_attributes(ImageAttributes::new(IntegerBounds::from_dimensions(whole)))
+        .with_attributes(LayerAttributes {
             layer_position: Vec2(place.x as i32, place.y as i32),
             ..LayerAttributes::default()
-        },
-        Encoding {
-            compression: style.compression.into(),
-            blocks: Blocks::ScanLines,
-            line_order: LineOrder::Increasing,
-        },
-        AnyChannels::sort(channels.into()),
-    );
-    let mut image = Image::from_layer(layer);
-    let whole = Vec2(place.width as usize, place.height as usize);
-    image.attributes.display_window = IntegerBounds::from_dimensions(whole);
+        });
     let mut file = Cursor::new(Vec::new());
-    exr_blocks::save(&image, &mut file).map_err(|e| e.to_string())?;
-    drop(image);
+    exr_blocks::save(header, &planes, &mut file).map_err(|e| e.to_string())?;
     exr_header::insert(file.into_inner(), &style.attributes)
 }
 
@@ -177,6 +177,7 @@ fn check_header(bytes: &[u8]) -> Result<(), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use exr::prelude::FlatSamples;
 
     fn picture(names: &[&str]) -> Picture {
         let samples = |k: usize| (0..35).map(|i| (i * i) as f32 * 0.37 - k as f32).collect();

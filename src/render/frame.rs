@@ -6,6 +6,7 @@
 //! that is stopped early has no holes, and no tile has less than half the samples of another.
 
 use std::{
+    cell::RefCell,
     ops::Range,
     sync::{
         Mutex, MutexGuard, PoisonError,
@@ -15,6 +16,7 @@ use std::{
 };
 
 use bumpalo::Bump;
+use rayon::prelude::*;
 
 use super::{
     Backend, Progress, Rendered, Settings,
@@ -27,7 +29,7 @@ use super::{
 };
 use crate::{
     compile::Scene,
-    film::{self, Film, Tile, TileFilm, spread::Spread},
+    film::{self, Film, Tile, TileFilm, spread::Spread, sums::Sums},
     picture::{Picture, Place},
     scene::Crop,
 };
@@ -96,6 +98,14 @@ pub struct Frame {
     /// What was spent on it before it was resumed.
     earlier: Duration,
     started: Mutex<Option<Instant>>,
+}
+
+/// What a thread works in.
+#[derive(Debug, Default)]
+struct Memory {
+    arena: Bump,
+    /// Of sums that are not needed any more: one, or none.
+    spare: Vec<Sums>,
 }
 
 /// A tile of the plan.
@@ -171,18 +181,20 @@ impl Frame {
         let there = |cell: &Cell| pixels(cell) * lock(&cell.state).film.samples.len() as u64;
         let done = AtomicU64::new(self.cells.iter().map(there).sum());
         // Each thread takes the next tile, and keeps its memory from tile to tile and from pass to pass.
-        let arenas: Vec<Mutex<Bump>> = (0..rayon::current_num_threads()).map(|_| Mutex::default()).collect();
+        let memory: Vec<Mutex<Memory>> =
+            (0..rayon::current_num_threads()).map(|_| Mutex::default()).collect();
         for end in passes(range.end - range.start) {
             let until = range.start + end;
             let next = AtomicUsize::new(0);
             let take = || self.cells.get(next.fetch_add(1, Ordering::Relaxed));
             rayon::broadcast(|thread| {
                 let Some(first) = take() else { return };
-                let mut arena = lock(&arenas[thread.index()]);
+                let Memory { arena, spare } = &mut *lock(&memory[thread.index()]);
                 arena.reset();
-                let mut wavefront = Wavefront::new(&arena, scene, integrator, settings);
+                let spare = RefCell::new(spare);
+                let mut wavefront = Wavefront::new(arena, scene, integrator, settings);
                 for cell in std::iter::once(first).chain(std::iter::from_fn(take)) {
-                    let visit = Visit { cell, frame: self, until, total, done: &done, watch };
+                    let visit = Visit { cell, frame: self, until, total, done: &done, watch, spare: &spare };
                     match settings.backend {
                         Backend::Packet => wavefront.render(&cell.tile, &visit),
                         Backend::Scalar => reference::render(scene, integrator, &cell.tile, &visit),
@@ -274,17 +286,26 @@ impl Frame {
         Some(TileView { x: x - self.window.x, y: y - self.window.y, samples, picture: film.develop() })
     }
 
-    /// The picture as it is now, and what it took.
+    /// Tiles side by side, from top to bottom; not all are of the plan.
+    fn rows(&self) -> Vec<&[Cell]> {
+        let (columns, rows) = (self.window.width.div_ceil(TILE), self.window.height.div_ceil(TILE));
+        let before = |row: u32| self.cells.partition_point(|cell| cell.number < row * columns);
+        (0..rows).map(|row| &self.cells[before(row)..before(row + 1)]).collect()
+    }
+
+    /// The picture as it is now, and what it took, on the current rayon pool.
     pub fn develop(&self) -> Rendered {
         let mut film = Film::new(self.window.width, self.window.height, &self.channels);
         let mut statistics = Statistics::default();
-        for cell in &self.cells {
-            let state = lock(&cell.state);
-            let Tile { x, y, .. } = cell.tile;
-            let place = Tile { x: x - self.window.x, y: y - self.window.y, ..cell.tile };
-            film.place(&place, &state.film.total());
-            statistics.merge(&state.statistics);
-        }
+        self.cells.iter().for_each(|cell| statistics.merge(&lock(&cell.state).statistics));
+        // Whoever writes to a page first makes the system find one: a band's pages are found by its own thread.
+        film.bands(TILE).into_par_iter().zip(self.rows()).for_each(|(mut band, cells)| {
+            for cell in cells {
+                let Tile { x, y, .. } = cell.tile;
+                let place = Tile { x: x - self.window.x, y: y - self.window.y, ..cell.tile };
+                band.place(&place, &lock(&cell.state).film.total());
+            }
+        });
         statistics.time = self.time();
         Rendered { picture: Picture { place: self.place, ..film.develop() }, statistics }
     }
@@ -315,6 +336,7 @@ pub(super) struct Visit<'a> {
     total: u64,
     done: &'a AtomicU64,
     watch: &'a Watch<'a>,
+    spare: &'a RefCell<&'a mut Vec<Sums>>,
 }
 
 impl Visit<'_> {
@@ -337,10 +359,14 @@ impl Visit<'_> {
         let start = Instant::now();
         let pixels = self.cell.tile.len() as u64 * samples.len() as u64;
         let mut state = lock(&self.cell.state);
+        let spare = &mut *self.spare.borrow_mut();
         for sample in samples {
+            state.film.begin_sample(spare);
             add(&mut state.film, sample);
-            state.film.finish_sample();
+            state.film.finish_sample(spare);
         }
+        // One is what the next block needs; more would grow with the number of samples.
+        spare.truncate(1);
         statistics.spend(Stage::Add, start);
         state.statistics.merge(&statistics);
         state.statistics.samples += pixels;

@@ -30,7 +30,7 @@ impl<'a> Layers<'a> {
     pub(super) fn new(arena: &'a Bump, scene: &Scene, channels: Range<usize>) -> Self {
         let quads = sums::quads(channels.end);
         let values = std::array::from_fn(|_| {
-            let mut values = vec![in arena; f32x8::zero(); (4 * quads).next_multiple_of(LANES)];
+            let mut values = vec![in arena; f32x8::zero(); 4 * quads];
             values[channels.end] = f32x8::one();
             values
         });
@@ -49,16 +49,19 @@ impl<'a> Layers<'a> {
         let rows = rows.as_flattened_mut();
         for (i, values) in self.values.iter().enumerate().take(R::LANES / LANES) {
             let pixels: [usize; LANES] = std::array::from_fn(|lane| pixels.lane(i * LANES + lane) as usize);
-            for (k, eight) in values.as_chunks::<LANES>().0.iter().enumerate() {
-                let numbers = transpose(*eight);
-                // Lanes behind the last of a group say what it says.
-                for (numbers, pixel) in numbers.iter().zip(pixels) {
-                    if self.quads == 1 {
-                        rows[4 * pixel..][..4].copy_from_slice(&numbers.to_array()[..4]);
-                    } else {
-                        let place = 4 * self.quads * pixel + LANES * k;
-                        rows[place..][..LANES].copy_from_slice(&numbers.to_array());
-                    }
+            let (eights, four) = values.as_chunks::<LANES>();
+            // Lanes behind the last of a group say what it says.
+            for (k, eight) in eights.iter().enumerate() {
+                for (numbers, pixel) in transpose(*eight).iter().zip(pixels) {
+                    let place = 4 * self.quads * pixel + LANES * k;
+                    rows[place..][..LANES].copy_from_slice(&numbers.to_array());
+                }
+            }
+            for four in four.as_chunks::<4>().0 {
+                let eight = std::array::from_fn(|k| if k < 4 { four[k] } else { f32x8::zero() });
+                for (numbers, pixel) in transpose(eight).iter().zip(pixels) {
+                    let place = 4 * self.quads * pixel + LANES * eights.len();
+                    rows[place..][..4].copy_from_slice(&numbers.half(0));
                 }
             }
         }

@@ -156,7 +156,10 @@ impl Writer {
             self.u32(*index);
             self.sums(sums);
         }
-        self.sums(&film.open);
+        match &film.open {
+            Some(open) => self.sums(open),
+            None => self.sums(&Sums::new(film.pixels(), film.channels())),
+        }
         self.u32(film.spread.is_some().into());
         if let Some(spread) = &film.spread {
             self.u32(spread.blocks);
@@ -274,14 +277,11 @@ impl Reader<'_> {
             0 => None,
             _ => Some(Spread { blocks: self.u32()?, sums: self.floats()?, squares: self.floats()? }),
         };
-        let film = TileFilm {
-            samples: start..end,
-            nodes,
-            open,
-            spread,
-            invalid,
-            first_invalid: some_invalid.then_some((pixel, sample)),
-        };
+        let mut film = TileFilm::new(open.pixels(), open.channels(), start);
+        film.samples.end = end;
+        film.reopen(open);
+        (film.nodes, film.spread, film.invalid) = (nodes, spread, invalid);
+        film.first_invalid = some_invalid.then_some((pixel, sample));
         let statistics = Statistics {
             samples,
             camera_rays,
@@ -309,7 +309,7 @@ mod tests {
                 let invalid = sample == 5 && pixel == 4;
                 film.add(pixel, 1.0, |c| if invalid { f32::NAN } else { (sample + c) as f32 });
             }
-            film.finish_sample();
+            film.finish_sample(&mut Vec::new());
         }
         let statistics = Statistics {
             samples: 126,
