@@ -38,8 +38,9 @@ use crate::{
 pub(super) const TILE: u32 = 32;
 
 /// Samples of a pixel that are taken at once, at most: neighbours in the order of paths, as their rays are in the scene,
-/// they meet the same boxes and the same triangles.
-const TOGETHER: u32 = 16;
+/// they meet the same boxes and the same triangles. Sixteen render 1.02 times as fast at best, and then a picture of
+/// sixteen samples, which never takes as many, has 5 % less memory than one of a thousand.
+const TOGETHER: u32 = 8;
 
 /// What is to be rendered of a scene, and how well.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -56,7 +57,7 @@ pub struct Plan {
 pub struct Watch<'a> {
     /// Is called from the threads, now and then.
     pub progress: &'a (dyn Fn(Progress) + Sync),
-    /// Is asked before a tile takes its next samples, which are 16 at most; after a `true` nothing more is begun.
+    /// Is asked before a tile takes its next samples, which are 8 at most; after a `true` nothing more is begun.
     pub stop: &'a (dyn Fn() -> bool + Sync),
 }
 
@@ -406,7 +407,7 @@ mod tests {
         }
         assert_eq!(
             [(0, 1), (1, 2), (2, 4), (4, 8), (8, 16), (16, 64)].map(|(a, b)| together(a, b)),
-            [1, 1, 2, 4, 8, 16]
+            [1, 1, 2, 4, 8, 8]
         );
     }
 }
