@@ -34,7 +34,7 @@ use crate::{
     scene::Crop,
 };
 
-/// Side of a tile in pixels: a thousand paths, whose columns stay in a core's second-level cache.
+/// Side of a tile in pixels: a thousand of them, so that what eight samples bring stays in a core's second-level cache.
 pub(super) const TILE: u32 = 32;
 
 /// Samples of a pixel that are taken at once, at most: neighbours in the order of paths, as their rays are in the scene,
