@@ -43,6 +43,8 @@ const FROZEN: &[(&str, u64)] = &[
 const FILM: Film = Film::new(43, 35);
 /// Not a power of two.
 const SAMPLES: u32 = 3;
+/// Taken one, two, four and eight at a time.
+const MANY_SAMPLES: u32 = 23;
 
 const PACKET: Settings = Settings { backend: Backend::Packet, sort: true, route: Route::Stream(Way::Chosen) };
 
@@ -201,6 +203,27 @@ fn every_way_to_render_gives_the_same_bits() {
             for (way, settings, threads) in ways() {
                 if let Some(difference) = difference(&on_threads(threads, &scene, &settings), &packet) {
                     panic!("scenes/{name}.xml, {integrator}, {way}: {difference}");
+                }
+            }
+        }
+    }
+}
+
+/// Samples that are taken together are those that the reference takes one by one.
+#[test]
+fn many_samples_have_the_same_bits_together() {
+    for (name, path) in scenes() {
+        let mut plain = description(&path);
+        plain.sensor.sampler.sample_count = MANY_SAMPLES;
+        let mut scene = compile(&plain).expect("a scene of ours compiles");
+        for (integrator, chosen) in integrators(&plain.integrator) {
+            scene.integrator = chosen;
+            scene.aovs = if integrator == "own integrator" { channels() } else { Vec::new() };
+            let one_by_one = on_threads(2, &scene, &Settings { backend: Backend::Scalar, ..PACKET });
+            for (sort, threads) in [(true, 1), (false, 2)] {
+                let together = on_threads(threads, &scene, &Settings { sort, ..PACKET });
+                if let Some(difference) = difference(&together, &one_by_one) {
+                    panic!("scenes/{name}.xml, {integrator}, sort {sort}: {difference}");
                 }
             }
         }

@@ -104,18 +104,19 @@ mod tests {
         let numbers = f32x8::from_fn(|i| i as f32);
         let light = |scale: f32| vector3(numbers, numbers, numbers).scale(f32x8::splat(scale));
         let zero = Vec3x8::zero();
-        connections.push(0b1010_0100, (zero, light(1.0), numbers), light(1.0), u32x8::splat(3));
+        connections.push(0b1010_0100, (zero, light(-1.0), numbers), light(1.0), u32x8::splat(3));
         connections.push(0b0000_0001, (zero, light(2.0), numbers), light(10.0), u32x8::splat(8));
         connections.push(0b0000_0110, (zero, light(2.0), numbers), light(10.0), u32x8::splat(3));
         assert_eq!(connections.len, 6);
         connections.order_by_octant();
+        // The first three point into another octant, and are traced last.
         let rays = connections.rays(0);
-        assert_eq!([0, 1, 2, 4, 5].map(|i| rays.t_far.lane(i)), [2.0, 5.0, 7.0, 1.0, 2.0]);
-        assert_eq!(rays.dir.lane(5), glam::Vec3::splat(4.0));
-        connections.block(1);
+        assert_eq!([0, 1, 2, 3, 4, 5].map(|i| rays.t_far.lane(i)), [0.0, 1.0, 2.0, 2.0, 5.0, 7.0]);
+        assert_eq!((rays.dir.lane(2), rays.dir.lane(5)), (glam::Vec3::splat(4.0), glam::Vec3::splat(-7.0)));
+        connections.block(2);
         connections.block(4);
         let arrived: Vec<_> = connections.iter().map(|(slot, light)| (slot, light[2])).collect();
-        assert_eq!(arrived, [(3, 2.0), (3, 0.0), (3, 7.0), (8, 0.0), (3, 0.0), (3, 20.0)]);
+        assert_eq!(arrived, [(3, 2.0), (3, 0.0), (3, 7.0), (8, 0.0), (3, 10.0), (3, 0.0)]);
         assert!(connections.iter().all(|(_, light)| light[..3] == [light[0]; 3] && light[3] == 0.0));
     }
 }
