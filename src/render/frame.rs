@@ -35,7 +35,7 @@ use crate::{
     scene::Crop,
 };
 
-pub(super) use visit::Visit;
+pub(super) use visit::{Visit, most_together};
 
 /// Side of a tile in pixels: a thousand of them, so that what eight samples bring stays in a core's second-level cache.
 pub(super) const TILE: u32 = 32;

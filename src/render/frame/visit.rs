@@ -27,6 +27,11 @@ fn together(first: u32, end: u32) -> u32 {
     1 << (end - first).ilog2().min(aligned)
 }
 
+/// Samples of a pixel that a render of so many takes at once, at most.
+pub(in crate::render) fn most_together(samples: u32) -> u32 {
+    (samples / 2).checked_ilog2().map_or(1, |power| 1 << power.min(TOGETHER.ilog2()))
+}
+
 /// A thread at a tile, for one pass.
 pub(in crate::render) struct Visit<'a> {
     pub(super) cell: &'a Cell,
@@ -83,8 +88,23 @@ impl Visit<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::passes;
     use super::*;
     use crate::film::sums::BLOCK;
+
+    #[test]
+    fn passes_take_no_more_together_than_is_said_before() {
+        for samples in 1..100 {
+            let (mut first, mut most) = (0, 0);
+            for end in passes(samples) {
+                while first < end {
+                    most = most.max(together(first, end));
+                    first += together(first, end);
+                }
+            }
+            assert_eq!(most_together(samples), most, "{samples}");
+        }
+    }
 
     #[test]
     fn samples_that_are_taken_at_once_are_of_one_block() {
