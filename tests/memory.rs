@@ -92,6 +92,7 @@ fn what_is_expected_is_close_to_what_is_taken() {
     let checkpoint = path(&folder("memory/kept"), "kept.exr");
     let kept = [&film[..], &["--checkpoint", &checkpoint]].concat();
     let threads = vec!["--width", "400", "--height", "400", "--spp", "1", "--threads", "16"];
+    let together = [&threads[..2], &["--height", "400", "--spp", "16", "--threads", "48"]].concat();
     let fast = [&small[..], &["--quality", "fast"]].concat();
     let mut complaints = Vec::new();
     for (scene, options) in [
@@ -101,6 +102,7 @@ fn what_is_expected_is_close_to_what_is_taken() {
         ("scenes/cornell.xml", layers),
         ("scenes/cornell.xml", kept),
         ("scenes/whitted.xml", threads),
+        ("scenes/whitted.xml", together),
         ("scenes/materials.xml", mesh.clone()),
         ("scenes/sky.xml", mesh.clone()),
         ("gen:terrain:200k", mesh.clone()),

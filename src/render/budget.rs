@@ -5,8 +5,9 @@
 
 use super::{
     aov::{self, AovIntegrator},
-    frame::TILE,
+    frame::{TILE, most_together},
     integrator::Integrator as _,
+    wavefront::PATHS,
 };
 use crate::bvh::Quality;
 use crate::compile::{Needs, needs};
@@ -101,10 +102,13 @@ fn film(description: &SceneDescription, keeps_sums: bool) -> u64 {
     // binary digit of the number of blocks.
     let samples = description.sensor.sampler.sample_count;
     let (blocks, open) = (samples / sums::BLOCK, !samples.is_multiple_of(sums::BLOCK));
-    let sums = (row(channels) + 1) * FLOAT * u64::from(blocks.count_ones() + u32::from(open));
+    let block = (row(channels) + 1) * FLOAT;
+    let sums = block * u64::from(blocks.count_ones() + u32::from(open));
+    // A file of sums always has the block that is open.
+    let kept = block * u64::from(blocks.count_ones() + 1);
     // The picture, the file, and what of it is being packed or is left of packing.
     let picture = (channels + alpha) * FLOAT * 5 / 2;
-    pixels * (sums + picture + if keeps_sums { 3 * sums } else { 0 })
+    pixels * (sums + picture + if keeps_sums { 3 * kept } else { 0 })
 }
 
 /// Numbers in a row of sums.
@@ -124,15 +128,20 @@ fn wavefront(description: &SceneDescription) -> u64 {
         }
         Integrator::Aov { .. } => (0, 1),
     };
-    let channels = row(channels(description).len() as u64);
-    // Rows of paths, now and next; hits, keys and order; sums of the round and of the pixel; connections.
-    let path = 64 * (1 + branches) + 28 + 2 * channels * FLOAT + shadow_rays * 11 * FLOAT;
-    // Where paths branch there are more of them than pixels, say twice as many; and an arena keeps what has been
-    // outgrown.
-    let slots = u64::from(TILE * TILE) * branches + LANES as u64;
-    // Sums that a thread keeps for its next block.
-    let spare = u64::from(TILE * TILE) * (channels + 1) * FLOAT;
-    2 * slots * path + spare
+    let summed = row(channels(description).len() as u64) * FLOAT;
+    let added = if matches!(description.integrator, Integrator::Aov { .. }) { summed } else { 4 * FLOAT };
+    // Rows and places of paths, now and next, and alive or not; their octants; hits, keys and order; points of the film;
+    // sums of the round; rows of connections, light, keys and orders.
+    let path = 69 * (1 + branches) + 12 + 28 + 8 + added + shadow_rays * 15 * FLOAT;
+    let (pixels, together) = (u64::from(TILE * TILE), most_together(description.sensor.sampler.sample_count));
+    let samples = pixels * u64::from(together);
+    // Where paths branch there are more of them than began, say two and a half times as many; and an arena keeps what
+    // has been outgrown.
+    let begun = samples.min(PATHS as u64);
+    let slots = LANES as u64 + if branches > 1 { begun * 5 / 2 } else { begun };
+    // What each sample brings and counts; and sums that a thread keeps for its next block.
+    let brought = samples * (summed + FLOAT) + pixels * (summed + FLOAT);
+    2 * slots * path + brought
 }
 
 #[cfg(test)]
@@ -172,6 +181,10 @@ mod tests {
         // Sums that are kept are three times there besides.
         let kept = Budget::new(&description, &Conditions { keeps_sums: true, ..CONDITIONS }).film;
         assert_eq!(kept, 100 * (4 * 5 * 4 + 4 * 10));
+        // There, the block that is open is one even where none is.
+        description.sensor.sampler.sample_count = 16;
+        let kept = Budget::new(&description, &Conditions { keeps_sums: true, ..CONDITIONS }).film;
+        assert_eq!(kept, 100 * ((1 + 3 * 2) * 5 * 4 + 4 * 10));
     }
 
     #[test]
@@ -189,6 +202,19 @@ mod tests {
         assert_eq!(budget.peak(), 50 + 30, "meshes and columns");
         let large = Budget { scene: Needs { tree: 100, ..scene }, ..budget };
         assert_eq!(large.peak(), 10 + 30 + 100 + 5, "columns and the tree");
+    }
+
+    #[test]
+    fn samples_that_are_taken_together_are_in_flight_together() {
+        let of = |samples| {
+            let mut description = SceneDescription::default();
+            description.sensor.sampler.sample_count = samples;
+            wavefront(&description)
+        };
+        assert_eq!((of(1), of(16)), (of(3), of(1024)));
+        assert!(of(16) > 3 * of(1), "{} {}", of(16), of(1));
+        // Half of those that are brought are not in flight.
+        assert!(of(16) > of(8) && of(16) < 2 * of(8));
     }
 
     #[test]

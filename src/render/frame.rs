@@ -5,9 +5,10 @@
 //! them whole. Threads go through the picture in passes that end at 1, 2, 4, 8 … samples, so that a picture
 //! that is stopped early has no holes, and no tile has less than half the samples of another.
 
+mod visit;
+
 use std::{
     cell::RefCell,
-    ops::Range,
     sync::{
         Mutex, MutexGuard, PoisonError,
         atomic::{AtomicU64, AtomicUsize, Ordering},
@@ -24,7 +25,7 @@ use super::{
     part::{Part, PartTile},
     reference,
     shard::Shard,
-    statistics::{Stage, Statistics},
+    statistics::Statistics,
     wavefront::Wavefront,
 };
 use crate::{
@@ -34,13 +35,10 @@ use crate::{
     scene::Crop,
 };
 
+pub(super) use visit::{Visit, most_together};
+
 /// Side of a tile in pixels: a thousand of them, so that what eight samples bring stays in a core's second-level cache.
 pub(super) const TILE: u32 = 32;
-
-/// Samples of a pixel that are taken at once, at most: neighbours in the order of paths, as their rays are in the scene,
-/// they meet the same boxes and the same triangles. Sixteen render 1.02 times as fast at best, and then a picture of
-/// sixteen samples, which never takes as many, has 5 % less memory than one of a thousand.
-const TOGETHER: u32 = 8;
 
 /// What is to be rendered of a scene, and how well.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -323,68 +321,9 @@ fn passes(samples: u32) -> impl Iterator<Item = u32> {
     ends.chain((samples > 0).then_some(samples))
 }
 
-/// How many samples are taken at once, from `first` on and before `end`.
-fn together(first: u32, end: u32) -> u32 {
-    let aligned = first.trailing_zeros().min(TOGETHER.ilog2());
-    1 << (end - first).ilog2().min(aligned)
-}
-
-/// A thread at a tile, for one pass.
-pub(super) struct Visit<'a> {
-    cell: &'a Cell,
-    frame: &'a Frame,
-    until: u32,
-    total: u64,
-    done: &'a AtomicU64,
-    watch: &'a Watch<'a>,
-    spare: &'a RefCell<&'a mut Vec<Sums>>,
-}
-
-impl Visit<'_> {
-    /// The next samples that the tile needs, if this pass has some for it: a power of two of them, from a multiple of
-    /// it on, so that they are of one block.
-    pub(super) fn next(&self) -> Option<Range<u32>> {
-        let film = &lock(&self.cell.state).film;
-        let done = film.is_done(self.until, self.frame.plan.target_error);
-        let first = film.samples.end;
-        (!done && !(self.watch.stop)()).then(|| first..first + together(first, self.until))
-    }
-
-    /// Adds samples of every pixel, one after the other, and what they took.
-    pub(super) fn finish(
-        &self,
-        samples: Range<u32>,
-        mut statistics: Statistics,
-        add: impl Fn(&mut TileFilm, u32),
-    ) {
-        let start = Instant::now();
-        let pixels = self.cell.tile.len() as u64 * samples.len() as u64;
-        let mut state = lock(&self.cell.state);
-        let spare = &mut *self.spare.borrow_mut();
-        for sample in samples {
-            state.film.begin_sample(spare);
-            add(&mut state.film, sample);
-            state.film.finish_sample(spare);
-        }
-        // One is what the next block needs; more would grow with the number of samples.
-        spare.truncate(1);
-        statistics.spend(Stage::Add, start);
-        state.statistics.merge(&statistics);
-        state.statistics.samples += pixels;
-        state.statistics.invalid_samples = state.film.invalid;
-        let Tile { x, y, width, .. } = self.cell.tile;
-        state.statistics.first_invalid =
-            state.film.first_invalid.map(|(pixel, sample)| (x + pixel % width, y + pixel / width, sample));
-        drop(state);
-        let done = self.done.fetch_add(pixels, Ordering::Relaxed) + pixels;
-        (self.watch.progress)(Progress { done, total: self.total });
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::sums::BLOCK;
 
     #[test]
     fn passes_double_and_end_where_they_should() {
@@ -394,20 +333,5 @@ mod tests {
         assert_eq!(ends(3), [1, 2, 3]);
         assert_eq!(ends(16), [1, 2, 4, 8, 16]);
         assert_eq!(ends(u32::MAX).len(), 33);
-    }
-
-    #[test]
-    fn samples_that_are_taken_at_once_are_of_one_block() {
-        for first in 0..70 {
-            for end in first + 1..100 {
-                let count = together(first, end);
-                assert!(count.is_power_of_two() && count <= end - first, "{first} {end}");
-                assert_eq!(first / BLOCK, (first + count - 1) / BLOCK, "{first} {end}");
-            }
-        }
-        assert_eq!(
-            [(0, 1), (1, 2), (2, 4), (4, 8), (8, 16), (16, 64)].map(|(a, b)| together(a, b)),
-            [1, 1, 2, 4, 8, 8]
-        );
     }
 }

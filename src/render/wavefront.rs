@@ -32,7 +32,7 @@ use crate::simd::{Bits, LANES, f32x8, u32x8};
 
 /// Paths in flight, at most: the more there are, the more of them meet the same things and the fuller are groups, as long
 /// as their rows stay in a core's second-level cache.
-const PATHS: usize = 4096;
+pub(super) const PATHS: usize = 4096;
 
 /// What one thread needs to render tiles, one after the other.
 pub(super) struct Wavefront<'a, I> {
