@@ -7,7 +7,7 @@ use super::{
     aov::{self, AovIntegrator},
     frame::{TILE, most_together},
     integrator::Integrator as _,
-    wavefront::PATHS,
+    wavefront::paths_at_once,
 };
 use crate::bvh::Quality;
 use crate::compile::{Needs, needs};
@@ -137,7 +137,7 @@ fn wavefront(description: &SceneDescription) -> u64 {
     let samples = pixels * u64::from(together);
     // Where paths branch there are more of them than began, say two and a half times as many; and an arena keeps what
     // has been outgrown.
-    let begun = samples.min(PATHS as u64);
+    let begun = samples.min(paths_at_once(shadow_rays as usize) as u64);
     let slots = LANES as u64 + if branches > 1 { begun * 5 / 2 } else { begun };
     // What each sample brings and counts; and sums that a thread keeps for its next block.
     let brought = samples * (summed + FLOAT) + pixels * (summed + FLOAT);

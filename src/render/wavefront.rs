@@ -32,7 +32,13 @@ use crate::simd::{Bits, LANES, f32x8, u32x8};
 
 /// Paths in flight, at most: the more there are, the more of them meet the same things and the fuller are groups, as long
 /// as their rows stay in a core's second-level cache.
-pub(super) const PATHS: usize = 4096;
+const PATHS: usize = 4096;
+
+/// So many of them where each asks for so many shadow rays, which have rows of their own: a power of two.
+pub(super) fn paths_at_once(shadow_rays: usize) -> usize {
+    let paths = (4 * PATHS / shadow_rays.max(1)).clamp(PATHS / 4, PATHS);
+    1 << paths.ilog2()
+}
 
 /// What one thread needs to render tiles, one after the other.
 pub(super) struct Wavefront<'a, I> {
@@ -138,7 +144,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
         let start = Instant::now();
         self.clear(pixels.len() * samples.len());
         statistics.spend(Stage::Shade, start);
-        let some = PATHS / samples.len();
+        let some = paths_at_once(self.integrator.shadow_rays(self.scene)) / samples.len();
         for first in (0..pixels.len()).step_by(some) {
             let start = Instant::now();
             self.start(pixels, first..pixels.len().min(first + some), samples);
@@ -317,5 +323,15 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
                 *sums = std::array::from_fn(|c| sums[c] + values[c]);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_are_whole_packets_and_fewer_where_each_asks_for_many_shadow_rays() {
+        assert_eq!([0, 1, 4, 5, 8, 16, 1000].map(paths_at_once), [4096, 4096, 4096, 2048, 2048, 1024, 1024]);
     }
 }
