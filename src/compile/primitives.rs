@@ -291,7 +291,7 @@ impl Leaves for Primitives {
         // From the one origin of all, for all triangles of the block at once.
         let triangles = block.lanes();
         let aspects = triangles.aspect(Vector3::splat(pencils.org()));
-        let margins = aspects.margin(triangles.edges, f32x8::splat(pencils.margin())).to_array();
+        let margins = aspects.margin_towards(Vector3::splat(pencils.rounding())).to_array();
         let planes = (mask.count_ones() > FEW).then(|| aspects.edge_planes());
         let aspects = AspectColumns::new(&aspects);
         let (lane, mut tests) = (first as usize % BLOCK, 0);

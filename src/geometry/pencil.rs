@@ -11,7 +11,7 @@
 
 use glam::Vec3;
 
-use super::{Aspect, triangle::rounding};
+use super::{Aspect, triangle::roundings};
 use crate::simd::{LANES, Mask8, Real, Vec3x8, f32x8};
 
 /// Roundings, in ulps of |dir|·(|s|·(|e₁| + |e₂|) + |e₁|·|e₂|): the kernel's products take part with at
@@ -29,7 +29,7 @@ pub struct Pencils {
     /// Greatest |x| + |y| + |z| of a direction.
     length: f32x8,
     /// What all of them have to do with the margins of triangles.
-    margin: f32,
+    rounding: Vec3,
 }
 
 impl Pencils {
@@ -43,14 +43,14 @@ impl Pencils {
             middle: (low + high).scale(half),
             radius: (high - low).scale(half),
             length: greatest.element_sum(),
-            margin: rounding(greatest).reduce_max(),
+            rounding: roundings(greatest).each(f32x8::reduce_max).into(),
         }
     }
 
-    /// The greatest [`margin`](super::RayLanes::margin) of any ray.
+    /// What the directions have to do with [margins](Aspect::margin_towards), by components.
     #[inline]
-    pub fn margin(&self) -> f32 {
-        self.margin
+    pub fn rounding(&self) -> Vec3 {
+        self.rounding
     }
 
     /// The origin.

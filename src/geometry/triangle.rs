@@ -119,6 +119,12 @@ pub(super) fn rounding<R: Real>(dir: Vector3<R>) -> R {
     dir.abs().element_sum() * R::splat(1.2 * ULPS)
 }
 
+/// The same, by components: for the margins that [`Aspect::margin_towards`] works out.
+#[inline]
+pub(super) fn roundings<R: Real>(dir: Vector3<R>) -> Vector3<R> {
+    dir.abs().scale(R::splat(1.2 * ULPS))
+}
+
 /// aⱼ·bₖ + aₖ·bⱼ for each axis i and the two others.
 #[inline]
 fn products<R: Real>(a: Vector3<R>, b: Vector3<R>) -> Vector3<R> {

@@ -1,6 +1,6 @@
 //! What of a test of triangles does not depend on a ray's direction, and the test itself.
 
-use super::LEAST;
+use super::{LEAST, products};
 use crate::geometry::{RayLanes, aabb};
 use crate::simd::{Bits, LANES, Mask, Real, Vector3, f32x8, vector3};
 
@@ -79,6 +79,14 @@ impl<R: Real> Aspect<R> {
     #[inline(always)]
     pub fn margin(&self, edges: R, rounding: R) -> R {
         self.size(edges) * rounding + R::splat(LEAST)
+    }
+
+    /// The margins themselves, for any direction of which `rounding` bounds what it has to do with them: a quarter of
+    /// the bound, for twice the work.
+    #[inline(always)]
+    pub fn margin_towards(&self, rounding: Vector3<R>) -> R {
+        let e = self.e1.abs() + self.e2.abs();
+        products(self.s.abs() + e, e).dot(rounding) + R::splat(LEAST)
     }
 
     /// |s| + |e₁| + |e₂| by sums of components, times the edges'.
