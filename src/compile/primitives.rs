@@ -292,13 +292,21 @@ impl Leaves for Primitives {
         let triangles = block.lanes();
         let aspects = triangles.aspect(Vector3::splat(pencils.org()));
         let margins = aspects.margin_towards(Vector3::splat(pencils.rounding())).to_array();
-        let planes = (mask.count_ones() > FEW).then(|| aspects.edge_planes());
+        let lane = first as usize % BLOCK;
+        let lanes = lane..lane + count as usize;
+        // Which bundles may hit which triangle: all are found out before the first is tested.
+        let mut near = [mask; BLOCK];
+        if mask.count_ones() > FEW {
+            let planes = aspects.edge_planes();
+            for lane in lanes {
+                near[lane] &= pencils.meet(&planes, lane).to_bitmask();
+            }
+        }
         let aspects = AspectColumns::new(&aspects);
-        let (lane, mut tests) = (first as usize % BLOCK, 0);
+        let mut tests = 0;
         for (lane, &margin) in margins.iter().enumerate().skip(lane).take(count as usize) {
             let id = &self.triangle_ids[first as usize / BLOCK * BLOCK + lane];
-            let meet = |planes| pencils.meet(planes, lane).to_bitmask();
-            let mut left = mask & planes.as_ref().map_or(u32::MAX, meet);
+            let mut left = near[lane];
             tests += left.count_ones();
             while left != 0 {
                 let bundle = left.trailing_zeros() as usize % 8;
