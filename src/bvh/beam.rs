@@ -4,9 +4,13 @@
 //! bounds on products of intervals are taken with the rounded operations of the exact slab test, which are
 //! monotone, so a box that a ray of the beam enters is never culled.
 
-use super::{Node, packet::Packet};
-use crate::geometry::{Pencils, RayLanes, Rayx16, aabb};
-use crate::simd::{Mask8, Real, f32x8, f32x16, transpose, vector3};
+use super::{
+    Node,
+    extent::{self, Extent},
+    packet::Packet,
+};
+use crate::geometry::{Pencils, RayLanes, aabb};
+use crate::simd::{Mask8, Real, f32x8, vector3};
 
 /// Beams in lanes, all into one octant.
 pub(super) struct Beam {
@@ -38,19 +42,15 @@ impl Beam {
         Self::new(org.map(range), rdir.map(range), t_near)
     }
 
-    /// Eight beams, each around sixteen rays; `None` if they point into several octants.
-    pub(super) fn of_bundles(rays: &[&Rayx16; 8]) -> Option<Self> {
-        // Transposed, a bundle is a lane, and what was a reduction is seven operations for all of them.
-        let range = |of: fn(&Rayx16) -> f32x16| -> Range {
-            let halves: [[f32x8; 2]; 8] = std::array::from_fn(|i| of(rays[i]).halves());
-            let least = transpose(halves.map(|[one, other]| one.min(other)));
-            let greatest = transpose(halves.map(|[one, other]| one.max(other)));
-            let least = least.into_iter().reduce(Real::min).unwrap_or_default();
-            (least, greatest.into_iter().reduce(Real::max).unwrap_or_default())
+    /// The beams of two runs, a bundle each; `None` if they point into several octants.
+    pub(super) fn of_runs(one: &Extent, other: &Extent) -> Option<Self> {
+        let lanes = |of: fn(&Extent) -> &[extent::Range; 3], axis: usize| {
+            let ((low, high), (other_low, other_high)) = (of(one)[axis], of(other)[axis]);
+            (f32x8::of_halves(low, other_low), f32x8::of_halves(high, other_high))
         };
-        let org = [range(|p| p.org.x), range(|p| p.org.y), range(|p| p.org.z)];
-        let rdir = [range(|p| p.rdir.x), range(|p| p.rdir.y), range(|p| p.rdir.z)];
-        Self::new(org, rdir, range(|p| p.t_near).0)
+        let org = [0, 1, 2].map(|axis| lanes(|extent| &extent.org, axis));
+        let rdir = [0, 1, 2].map(|axis| lanes(|extent| &extent.rdir, axis));
+        Self::new(org, rdir, f32x8::splat(Real::min(one.t_near, other.t_near)))
     }
 
     /// The directions of the beams, if all of them have one origin.

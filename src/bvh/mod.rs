@@ -14,6 +14,7 @@ mod build;
 mod bundle;
 mod cost;
 mod entry;
+mod extent;
 mod habit;
 mod node;
 mod occluder;

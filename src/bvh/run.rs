@@ -5,6 +5,7 @@ use super::{
     bundle::{BUNDLE, Grouping},
     cost::Cost,
     entry::Segments,
+    extent::Extent,
     habit::{Coherence, Habit},
     occluder::Occluder,
 };
@@ -30,6 +31,8 @@ pub(super) struct Run {
     len: usize,
     grouping: Grouping,
     pub(super) bundles: [Rayx16; BUNDLES],
+    /// Bounds on them, if all were to be traced when they were taken.
+    extent: Option<Extent>,
     /// Those that are to be traced: a place is a bit.
     pub(super) active: u64,
     /// Occlusion rays that are known to be blocked; they are not active.
@@ -109,6 +112,7 @@ impl Run {
             self.active |= (active & 0xf) << self.grouping.place(number)
                 | (active >> 4) << self.grouping.place(number + 4);
         }
+        self.extent = None;
     }
 
     /// Where occlusion rays may start; `None` if their segments are not all bounded.
@@ -121,21 +125,30 @@ impl Run {
         segments.bounds(bvh.reach()).map(|bounds| bvh.entry(bounds))
     }
 
+    /// Bounds on the rays, where they may be wanted: for a tile.
+    fn bound(&mut self) {
+        if self.is_whole() {
+            self.extent = Extent::of(&self.bundles);
+        }
+    }
+
+    /// Bounds on the rays; `None` unless all are there, to be traced, and may point into one octant.
+    pub(super) fn extent(&self) -> Option<&Extent> {
+        self.extent.as_ref().filter(|_| self.is_whole())
+    }
+
     /// The diagonal of the box around the directions, in lengths of its middle, and whether they point into one
     /// octant.
     fn spread(&self) -> (f32, bool) {
+        if let Some(spread) = self.extent().and_then(Extent::spread) {
+            return (spread, true);
+        }
         let (mut low, mut high) =
             (Vec3x16::splat(glam::Vec3::INFINITY), Vec3x16::splat(glam::Vec3::NEG_INFINITY));
-        if self.is_whole() {
-            for rays in &self.bundles {
-                (low, high) = (rays.dir.min(low), rays.dir.max(high));
-            }
-        } else {
-            for (i, rays) in self.bundles.iter().enumerate() {
-                let active = Mask16::from_bitmask((self.active >> (i * BUNDLE)) as u32 & 0xffff);
-                low = Vec3x16::select(active, rays.dir.min(low), low);
-                high = Vec3x16::select(active, rays.dir.max(high), high);
-            }
+        for i in 0..BUNDLES {
+            let (rays, active) = self.bundle(i);
+            low = Vec3x16::select(active, rays.dir.min(low), low);
+            high = Vec3x16::select(active, rays.dir.max(high), high);
         }
         let fold = |v: Vec3x16, of: fn(f32x8, f32x8) -> f32x8| {
             v.each(|v| {
@@ -182,7 +195,7 @@ impl Default for Runs {
     fn default() -> Self {
         let nothing = RayLanes::splat(&Ray::new(glam::Vec3::ZERO, glam::Vec3::ONE, 0.0, -1.0));
         let (bundles, grouping) = ([nothing; BUNDLES], Grouping::Rows);
-        let run = || Run { first: 0, len: 0, grouping, bundles, active: 0, blocked: 0 };
+        let run = || Run { first: 0, len: 0, grouping, bundles, extent: None, active: 0, blocked: 0 };
         Self {
             run: Box::new([run(), run()]),
             next: 0,
@@ -241,6 +254,9 @@ impl Runs {
         }
         if ANY {
             self.occluder.block(run, leaves, tally);
+        }
+        if !ANY || self.forced == Way::Tile {
+            run.bound();
         }
         self.waiting[which] =
             Some(if self.forced == Way::Chosen { self.choose::<ANY>(which) } else { self.forced });

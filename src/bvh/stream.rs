@@ -7,6 +7,7 @@
 
 use super::{
     Bvh, Child, Hitx16, Leaves, Tally, Traversal, Wave,
+    beam::Beam,
     bundle::BUNDLE,
     cost::Cost,
     run::{BUNDLES, RUN, Run, Runs},
@@ -163,16 +164,18 @@ impl Bvh {
         runs: &[Run],
         traversal: &mut Traversal<T>,
     ) -> Option<Cost> {
-        if !runs.iter().all(Run::is_whole) {
-            return None;
-        }
+        let (one, other) = (runs.first()?.extent()?, runs.last()?.extent()?);
+        let beams = Beam::of_runs(one, other)?;
         let bundle = |i: usize| runs.get(i / BUNDLES).map(|run| &run.bundles[i % BUNDLES]);
         let rays = std::array::from_fn(|i| bundle(i).unwrap_or(&runs[0].bundles[0]));
         // Nothing is hit before −∞, where there is no ray.
-        let limit = |i: usize| bundle(i).map_or(f32x16::splat(f32::NEG_INFINITY), |rays| rays.t_far);
-        let mut hits = std::array::from_fn(|i| Hitx16::nothing(limit(i)));
+        let mut hits = [Hitx16::nothing(f32x16::splat(f32::NEG_INFINITY)); TILE];
+        for (hit, rays) in hits.iter_mut().zip(runs.iter().flat_map(|run| &run.bundles)) {
+            hit.t = rays.t_far;
+        }
         let mut ahead = Ahead::new(stream, runs[0].first, RUN * runs.len());
-        let cost = self.intersect_tile::<ANY, L, S, T>(leaves, &rays, &mut hits, &mut ahead, traversal)?;
+        let rays = (&rays, &beams);
+        let cost = self.intersect_tile::<ANY, L, S, T>(leaves, rays, &mut hits, &mut ahead, traversal);
         ahead.finish();
         for (run, hits) in runs.iter().zip(hits.chunks(BUNDLES)) {
             if ANY {

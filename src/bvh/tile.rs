@@ -19,20 +19,18 @@ use crate::simd::{Mask, Real, f32x8};
 const FEW: u32 = 4;
 
 impl Bvh {
-    /// Traces a tile; `hits` as for [`Bvh::intersect_packet`]. Returns what it cost; `None`, and it has done
-    /// nothing, if the rays do not point into one octant.
+    /// Traces a tile, whose bundles the beams are around; `hits` as for [`Bvh::intersect_packet`]. Returns what it cost.
     pub(super) fn intersect_tile<const ANY: bool, L: Leaves, S: Stream, T: Tally>(
         &self,
         leaves: &L,
-        rays: &[&Rayx16; TILE],
+        (rays, beams): (&[&Rayx16; TILE], &Beam),
         hits: &mut [Hitx16; TILE],
         ahead: &mut Ahead<S>,
         traversal: &mut Traversal<T>,
-    ) -> Option<Cost> {
-        let beams = Beam::of_bundles(rays)?;
+    ) -> Cost {
         let mut cost = Cost::TILE;
         if self.nodes.is_empty() {
-            return Some(cost);
+            return cost;
         }
         let (all, pencils) = (beams.around(), beams.pencils());
         let Traversal { stack, tally, .. } = traversal;
@@ -67,7 +65,7 @@ impl Bvh {
                         let child = node.children[place];
                         // Planes are tested once for all bundles: no box is worth it for more than a few.
                         if child.is_leaf() && (pencils.is_none() || mask.count_ones() <= FEW) {
-                            mask = rays_enter(node, place, &beams, rays, hits, mask);
+                            mask = rays_enter(node, place, beams, rays, hits, mask);
                         }
                         if mask != 0 {
                             self.ask_for(child, leaves);
@@ -98,7 +96,7 @@ impl Bvh {
                 }
             }
         }
-        Some(cost)
+        cost
     }
 }
 
