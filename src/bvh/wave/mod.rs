@@ -1,7 +1,7 @@
-//! Rays that have nothing in common: sixteen of them, each on its own way, in turn.
+//! Rays that have nothing in common: thirty-two of them, each on its own way, in turn.
 //!
 //! A single ray is a chain of steps that wait for one another: which node is next is known only when the
-//! last one has been tested. Sixteen rays that take the same step in turn, without a branch that depends
+//! last one has been tested. Thirty-two rays that take the same step in turn, without a branch that depends
 //! on the ray, hide each other's waiting; while one works, the others' next nodes are on their way from
 //! memory.
 //!
@@ -18,10 +18,14 @@ use super::{
 use feed::Feed;
 use slot::Slot;
 
-/// Rays in turn: fewer leave latency open, more leave the first-level cache.
-const SLOTS: usize = 16;
+/// Rays in turn: with fewer, passes are short, and the end of each is a branch that is guessed wrong; more leave the
+/// first-level cache.
+const SLOTS: usize = 32;
 /// All slots.
-const ALL: u32 = (1 << SLOTS) - 1;
+const ALL: u32 = u32::MAX;
+/// Slots that wait at leaves, and at their ends, before these have a pass, for the same reason.
+const AT_LEAVES: u32 = 12;
+const AT_ENDS: u32 = 6;
 
 /// Slots of a wave and the rays that wait for one, kept from stream to stream.
 pub(super) struct Wave {
@@ -57,9 +61,9 @@ impl Sets {
         among & !self.leaves
     }
 
-    /// Those that are at leaves; they are taken out.
-    fn take_leaves(&mut self) -> u32 {
-        std::mem::replace(&mut self.leaves, self.done) & !self.done
+    /// Those that are at leaves.
+    fn at_leaves(&self) -> u32 {
+        self.leaves & !self.done
     }
 }
 
@@ -112,12 +116,18 @@ impl Bvh {
             steps += nodes.count_ones();
             sets = self.pass_nodes::<ANY, ASK, L, T>(leaves, slots, nodes, sets, tally);
             nodes = sets.nodes(nodes);
-            let at_leaves = sets.take_leaves();
-            let (after, tested) =
-                self.pass_leaves::<ANY, ASK, L, T>(leaves, (slots, at_leaves), sets, runs, tally);
-            sets = after;
-            blocks += tested;
-            nodes |= sets.nodes(at_leaves);
+            let at_leaves = sets.at_leaves();
+            if nodes == 0 || at_leaves.count_ones() >= AT_LEAVES {
+                sets.leaves = sets.done;
+                let (after, tested) =
+                    self.pass_leaves::<ANY, ASK, L, T>(leaves, (slots, at_leaves), sets, runs, tally);
+                sets = after;
+                blocks += tested;
+                nodes |= sets.nodes(at_leaves);
+            }
+            if nodes | sets.at_leaves() != 0 && sets.done.count_ones() < AT_ENDS {
+                continue;
+            }
             let done = std::mem::take(&mut sets.done);
             sets.leaves &= !done;
             let mut started = 0;
