@@ -115,11 +115,13 @@ mod tests {
         for round in 0..500 {
             let still = round % 2 == 0;
             let place = random.vector();
-            let bundles = rays(|_| {
+            // The last bundle points anywhere, the first one into one octant.
+            let bundles = rays(|i| {
                 let org = if still { place } else { random.vector() };
-                Ray::new(org, random.vector(), random.signed(), 9.0)
+                let dir = random.vector();
+                Ray::new(org, if i < 48 { dir.abs() } else { dir }, random.signed(), 9.0)
             });
-            let extent = Extent::of(&bundles);
+            let extent = Extent::of(&bundles).expect("a first bundle in one octant");
             let mut t_near = f32::INFINITY;
             for (i, rays) in bundles.iter().enumerate() {
                 for axis in 0..3 {
@@ -141,13 +143,16 @@ mod tests {
     #[test]
     fn spread_is_the_diagonal_of_the_directions() {
         let towards = |i: usize| Vec3::new(-2.0 - (i % 8) as f32 / 7.0, 0.0, 3.0 + (i / 8) as f32 / 7.0);
-        let extent = Extent::of(&rays(|i| Ray::new(Vec3::ZERO, towards(i), 0.0, 1.0)));
-        let spread = extent.spread().unwrap_or_default();
-        assert!((spread - (2.0 / (2.5 * 2.5 + 3.5 * 3.5)).sqrt()).abs() < 1e-5, "{spread}");
-        // One of sixty-four points elsewhere, or into the plane from the other side.
+        let spread = |towards: &dyn Fn(usize) -> Vec3| {
+            Extent::of(&rays(|i| Ray::new(Vec3::ZERO, towards(i), 0.0, 1.0)))?.spread()
+        };
+        let one_octant = spread(&towards).unwrap_or_default();
+        assert!((one_octant - (2.0 / (2.5 * 2.5 + 3.5 * 3.5)).sqrt()).abs() < 1e-5, "{one_octant}");
+        // One of sixty-four points elsewhere, or is the other zero: the first, or the last.
         for other in [Vec3::ONE, Vec3::new(-2.0, -0.0, 3.0)] {
-            let one = |i| if i == 63 { other } else { towards(i) };
-            assert!(Extent::of(&rays(|i| Ray::new(Vec3::ZERO, one(i), 0.0, 1.0))).spread().is_none());
+            for which in [0, 63] {
+                assert!(spread(&|i| if i == which { other } else { towards(i) }).is_none());
+            }
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What ways have cost lately, and which of them the next rays had better go.
 
-/// One run in so many goes the way that has cost more, to see whether it still does; in twice as many if that
+/// One run in so many goes the way that has cost more, to see whether it still does; in four times as many if that
 /// has cost twice as much.
 const PROBE: u32 = 64;
 /// The same for scattered rays, which packets seldom suit.
@@ -62,10 +62,11 @@ impl Habit {
                 self.settled = 0;
             }
         }
-        // The dearer the other way, the less often it is worth a try.
+        // The dearer the other way, the less often it is worth a try, and the less all tries together may cost.
         let probe = if coherence == Coherence::Scattered { PROBE_SCATTERED } else { PROBE };
+        let dearer = more / less;
         self.turn += 1;
-        if self.turn as f32 * less < probe as f32 * more {
+        if (self.turn as f32) < probe as f32 * dearer * dearer {
             return !self.goes_alone;
         }
         self.turn = 0;
@@ -116,7 +117,7 @@ mod tests {
                 habit.learn_alone(120.0 * place);
             }
         }
-        // One in 1.2 · 64 to see whether it still is so.
+        // One in 1.2² · 64 to see whether it still is so.
         assert!((100..200).contains(&alone), "{alone}");
     }
 

@@ -5,7 +5,7 @@
 //! ([`Leaves`]).
 //!
 //! `build` makes it, by one of three qualities ([`Quality`]). Traversal: tiles of up to 128 rays, packets of
-//! eight and of sixteen, sixteen single rays in turn, one ray that meets a tree within another, or one ray
+//! eight and of sixteen, thirty-two single rays in turn, one ray that meets a tree within another, or one ray
 //! and one box at a time, the reference for the others; closest hit and occlusion from one body each.
 
 mod alone;

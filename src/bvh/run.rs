@@ -293,8 +293,11 @@ impl Runs {
     /// Remembers what the run that was taken cost as a tile or as packets.
     pub(super) fn learn_together<const ANY: bool>(&mut self, cost: Cost, rays: usize) {
         let coherence = self.coherence[0];
-        let cost = if coherence == Coherence::Scattered { cost * Cost::FAR } else { cost };
-        let cost = if ANY { cost * Cost::OCCLUSION } else { cost };
+        let cost = match (ANY, coherence) {
+            (true, _) => cost * Cost::OCCLUSION,
+            (false, Coherence::Scattered) => cost * Cost::FAR,
+            _ => cost,
+        };
         self.habits[usize::from(ANY)][coherence as usize].learn_together(cost.0 / rays as f32);
     }
 

@@ -112,7 +112,7 @@ pub enum Way {
     Tile,
     /// Packets of sixteen.
     Packet,
-    /// Sixteen single rays in turn.
+    /// Thirty-two single rays in turn.
     Wave,
 }
 
