@@ -14,7 +14,7 @@ fn references(spec: &str) -> Vec<Reference> {
         Triangle::new(v0, v1, v2)
     };
     let boxes = mesh.triangles.iter().map(|corners| triangle(corners).bounds());
-    boxes.enumerate().map(|(i, bounds)| Reference { bounds, index: i as u32, class: 0 }).collect()
+    boxes.enumerate().map(|(i, bounds)| Reference::new(bounds, i as u32, 0)).collect()
 }
 
 fn build(c: &mut Criterion) {

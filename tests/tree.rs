@@ -25,7 +25,7 @@ impl Random {
 const DEPTH: usize = 76;
 
 fn references(boxes: &[Aabb], class: impl Fn(usize) -> u8) -> Vec<Reference> {
-    let reference = |(i, &bounds): (usize, &Aabb)| Reference { bounds, index: i as u32, class: class(i) };
+    let reference = |(i, &bounds): (usize, &Aabb)| Reference::new(bounds, i as u32, class(i));
     boxes.iter().enumerate().map(reference).collect()
 }
 

@@ -97,7 +97,7 @@ impl Instances {
             (first..)
                 .zip(&placed)
                 .filter(|(_, placed)| !parts[placed.group as usize].is_empty())
-                .map(|(index, placed)| Reference { bounds: placed.placement.bounds, index, class: INSTANCE }),
+                .map(|(index, placed)| Reference::new(placed.placement.bounds, index, INSTANCE)),
         );
         Ok(Self { groups, placed, first, slots: vec![] })
     }

@@ -209,7 +209,7 @@ fn compile_shapes(
         Instances::new((groups, &description.instances), &named, quality, first, &mut references)?;
     let bvh_time = start.elapsed();
 
-    let bounds = references.iter().fold(Aabb::EMPTY, |bounds, reference| bounds.union(reference.bounds));
+    let bounds = references.iter().fold(Aabb::EMPTY, |bounds, reference| bounds.union(reference.aabb()));
     let extent = (bounds.max - bounds.min).max(Vec3::ZERO);
     let light_choice = lights::choice(&lights, 0.5 * extent.length());
 

@@ -169,7 +169,7 @@ impl Shapes {
                 self.add_canonical(canonical::cylinder(to_world, p0, p1, radius))
             }
         };
-        let bounds = self.references[references..].iter().fold(Aabb::EMPTY, |b, r| b.union(r.bounds));
+        let bounds = self.references[references..].iter().fold(Aabb::EMPTY, |b, r| b.union(r.aabb()));
         // Extents are squared in areas; half the exponent range is the end of it.
         let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
         if self.references.len() > references && !(reach.is_finite() && reach < 1e18) {
@@ -203,7 +203,7 @@ impl Shapes {
     /// Numbers a primitive and, if it can be hit, hands it to the tree.
     fn refer(&mut self, bounds: Aabb, class: u8) {
         let index = self.number();
-        self.references.push(Reference { bounds, index, class });
+        self.references.push(Reference::new(bounds, index, class));
     }
 
     fn number(&mut self) -> u32 {
@@ -268,6 +268,7 @@ fn emitter_extent(emitting: &Emitting) -> Vec3 {
 }
 
 impl Surfaces {
+    #[inline]
     fn triangle(&self, index: usize, uv: Interpolate) -> Triangle {
         let [v0, v1, v2] = self.vertices.positions(uv, self.triangles[index]);
         Triangle::new(v0, v1, v2)
@@ -284,6 +285,7 @@ impl Surfaces {
     }
 
     /// What the kernels need of a primitive.
+    #[inline]
     pub(super) fn primitive(&self, id: u32) -> Primitive {
         let shape = self.shape(id);
         let index = (id - shape.first + shape.first_in_class) as usize;

@@ -1,7 +1,7 @@
 //! The tree of two that is built before the tree of eight.
 
-use super::reference::Bounds;
-use crate::geometry::Aabb;
+use super::bounds::Bounds;
+use crate::simd::u32x8;
 
 /// A node of the binary tree.
 ///
@@ -10,7 +10,7 @@ use crate::geometry::Aabb;
 /// many there are. A run may be longer than it needs to be.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Binary {
-    pub(super) bounds: Aabb,
+    pub(super) bounds: Bounds,
     /// First of its references.
     pub(super) first: u32,
     /// An inner node's distance to its right child's place; the left child stands next. A leaf's count of
@@ -31,26 +31,24 @@ impl Binary {
     /// `count` references from `first` on.
     #[inline]
     pub(super) fn leaf(bounds: Bounds, first: u32, count: usize) -> Self {
-        Self { bounds: bounds.aabb(), first, word: (count as u32).wrapping_neg() }
+        Self { bounds, first, word: (count as u32).wrapping_neg() }
     }
 
     /// A node whose right child stands `right` places on.
     #[inline]
     pub(super) fn inner(bounds: Bounds, first: u32, right: usize) -> Self {
-        Self { bounds: bounds.aabb(), first, word: right as u32 }
+        Self { bounds, first, word: right as u32 }
     }
 
     #[inline]
     pub(super) fn pack(self) -> Packed {
-        let Aabb { min, max } = self.bounds;
-        let bits = f32::to_bits;
-        [bits(min.x), bits(min.y), bits(min.z), bits(max.x), bits(max.y), bits(max.z), self.first, self.word]
+        self.bounds.row([self.first, self.word])
     }
 
     #[inline]
-    pub(super) fn unpack(&[x0, y0, z0, x1, y1, z1, first, word]: &Packed) -> Self {
-        let corner = |x, y, z| glam::vec3(f32::from_bits(x), f32::from_bits(y), f32::from_bits(z));
-        Self { bounds: Aabb { min: corner(x0, y0, z0), max: corner(x1, y1, z1) }, first, word }
+    pub(super) fn unpack(packed: &Packed) -> Self {
+        let &[.., first, _, _, _, word] = packed;
+        Self { bounds: Bounds::of_row(u32x8::new(*packed)), first, word }
     }
 
     #[inline]

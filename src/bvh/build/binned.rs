@@ -5,8 +5,9 @@ use rayon::prelude::*;
 use super::{
     binary::{self, Binary, Packed},
     bins::{self, CHUNK, Plane},
+    bounds::Bounds,
     partition::{self, Centres},
-    reference::{Bounds, Reference},
+    reference::Reference,
     sweep::{self, SMALL},
 };
 
@@ -36,8 +37,9 @@ pub(super) fn extents(references: &[Reference]) -> [Bounds; 2] {
     let both = |a: [Bounds; 2], b: [Bounds; 2]| [a[0].union(b[0]), a[1].union(b[1])];
     let chunks = references.par_chunks(CHUNK).map(|chunk| {
         chunk.iter().fold([Bounds::EMPTY; 2], |all, reference| {
+            reference.ask_for_later();
             let bounds = reference.bounds();
-            both(all, [bounds, Bounds::point(bounds.centre())])
+            both(all, [bounds, bounds.shrunk()])
         })
     });
     chunks.reduce(|| [Bounds::EMPTY; 2], both)
@@ -91,8 +93,8 @@ fn split(references: &mut [Reference], extent: &Extent) -> Option<(Extent, Exten
     // Equal centres, or too deep: halves in the given order, classes apart in the end.
     let mut left_count = count / 2;
     if count <= MAX_LEAF {
-        references.sort_by_key(|reference| reference.class);
-        left_count = references.partition_point(|reference| reference.class == references[0].class);
+        references.sort_by_key(Reference::class);
+        left_count = references.partition_point(|reference| reference.class() == references[0].class());
         if left_count == count {
             return None;
         }

@@ -3,20 +3,24 @@
 use glam::Vec3A;
 use rayon::prelude::*;
 
-use super::reference::{Bounds, Reference};
+use super::{
+    bounds::Bounds,
+    reference::Reference,
+    splits::{Cheapest, PLACES, ROW, Splits},
+};
+use crate::simd::{Bits, Mask, Real, f32x8, u32x8};
 
 /// References that one thread puts into bins or partitions at a time, where several do.
 pub(super) const CHUNK: usize = 16 * 1024;
 
 /// Bins along each axis, a power of two.
-const BINS: usize = 16;
+const BINS: usize = ROW;
 
 /// A plane between bins along an axis.
 #[derive(Clone, Copy)]
 pub(super) struct Plane {
-    pub(super) axis: usize,
-    origin: f32,
-    scale: f32,
+    axis: usize,
+    grid: Grid,
     end: f32,
     /// References to its left.
     pub(super) left_count: usize,
@@ -25,10 +29,11 @@ pub(super) struct Plane {
 }
 
 impl Plane {
+    /// Is a reference left of it, whose [`Bounds::centre`] this is?
     #[inline]
-    pub(super) fn is_left(&self, reference: &Reference) -> bool {
-        // As in `Grid::place`, operation by operation.
-        (reference.centre(self.axis) - self.origin) * self.scale + 1.0 < self.end
+    pub(super) fn is_left(&self, centre: Vec3A) -> bool {
+        let left = self.grid.place(centre).cmplt(Vec3A::splat(self.end));
+        left.bitmask() >> self.axis & 1 != 0
     }
 }
 
@@ -58,78 +63,107 @@ impl Grid {
     }
 }
 
-/// What is in each bin along each axis.
-#[derive(Clone)]
-struct Bins {
-    bounds: [[Bounds; BINS]; 3],
-    counts: [[u32; BINS]; 3],
+/// A box, and in a lane that it spares how many references are in it.
+#[derive(Clone, Copy)]
+struct Bin(f32x8);
+
+impl Bin {
+    /// The bits of 1: a number that no box has more of in that lane, and with which arithmetic is quick.
+    const NONE: u32 = 1f32.to_bits();
+    const EMPTY: Self = {
+        let mut lanes = [f32::NEG_INFINITY; 8];
+        lanes[3] = f32::from_bits(Self::NONE);
+        Self(f32x8::new(lanes))
+    };
+
+    /// Adds references to the number.
+    #[inline]
+    fn count(lanes: f32x8, references: u32) -> Self {
+        let more = u32x8::new([0, 0, 0, references, 0, 0, 0, 0]);
+        Self(f32x8::from_bits(lanes.to_bits().wrapping_add(more)))
+    }
+
+    /// With the box of one more. Of a reference, whose lanes to spare are -∞.
+    #[inline]
+    fn with(self, bounds: Bounds) -> Self {
+        Self::count(self.0.max(bounds.0), 1)
+    }
+
+    #[inline]
+    fn merge(self, other: Self) -> Self {
+        Self::count(self.0.max(other.bounds().0), other.references())
+    }
+
+    #[inline]
+    fn bounds(self) -> Bounds {
+        Bounds::of_row(self.0.to_bits())
+    }
+
+    #[inline]
+    fn references(self) -> u32 {
+        self.0.to_bits().to_array()[3] - Self::NONE
+    }
 }
 
-impl Bins {
-    const EMPTY: Self = Self { bounds: [[Bounds::EMPTY; BINS]; 3], counts: [[0; BINS]; 3] };
+/// What is in each bin along each axis.
+#[derive(Clone)]
+struct Bins([[Bin; BINS]; 3]);
 
-    fn fill(grid: &Grid, references: &[Reference]) -> Self {
+impl Bins {
+    const EMPTY: Self = Self([[Bin::EMPTY; BINS]; 3]);
+
+    /// `FAR`: they are among so many that not all are in a cache.
+    fn fill<const FAR: bool>(grid: &Grid, references: &[Reference]) -> Self {
         let mut bins = Self::EMPTY;
         for reference in references {
+            if FAR {
+                reference.ask_for_later();
+            }
             let bounds = reference.bounds();
             let places = grid.place(bounds.centre()).to_array();
-            for (axis, place) in places.into_iter().enumerate() {
-                let bin = (place.to_bits() >> (23 - BINS.ilog2())) as usize % BINS;
-                bins.bounds[axis][bin] = bins.bounds[axis][bin].union(bounds);
-                bins.counts[axis][bin] += 1;
+            for (bins, place) in bins.0.iter_mut().zip(places) {
+                let bin = &mut bins[(place.to_bits() >> (23 - BINS.ilog2())) as usize % BINS];
+                *bin = bin.with(bounds);
             }
         }
         bins
     }
 
     fn merge(mut self, other: &Self) -> Self {
-        for axis in 0..3 {
-            for bin in 0..BINS {
-                self.bounds[axis][bin] = self.bounds[axis][bin].union(other.bounds[axis][bin]);
-                self.counts[axis][bin] += other.counts[axis][bin];
-            }
+        for (own, others) in self.0.as_flattened_mut().iter_mut().zip(other.0.as_flattened()) {
+            *own = own.merge(*others);
         }
         self
     }
 
     /// The cheapest plane that has something on either side.
     fn cheapest(&self, grid: &Grid, count: usize) -> Option<Plane> {
-        let mut best: Option<(f32, usize, usize)> = None;
-        for axis in 0..3 {
-            if grid.scale[axis] == 0.0 {
-                continue;
-            }
-            let (bounds, counts) = (&self.bounds[axis], &self.counts[axis]);
-            let mut right_costs = [0.0; BINS];
-            let (mut right, mut right_count) = (Bounds::EMPTY, 0);
-            for bin in (1..BINS).rev() {
-                right = right.union(bounds[bin]);
-                right_count += counts[bin];
-                right_costs[bin] = right.half_area() * right_count as f32;
-            }
-            let (mut left, mut left_count) = (Bounds::EMPTY, 0);
-            for bin in 1..BINS {
-                left = left.union(bounds[bin - 1]);
-                left_count += counts[bin - 1];
-                let cost = left.half_area() * left_count as f32 + right_costs[bin];
-                let separates = left_count != 0 && left_count as usize != count;
-                if separates && best.is_none_or(|(least, ..)| cost < least) {
-                    best = Some((cost, axis, bin));
-                }
+        let mut splits = Splits::EMPTY;
+        let mut left_counts = [0; PLACES];
+        for (axis, bins) in self.0.iter().enumerate() {
+            splits.fill(axis, BINS, |bin| bins[bin].bounds());
+            let mut left_count = 0;
+            for (bin, place) in bins.iter().zip(&mut left_counts[axis * (BINS - 1)..][..BINS - 1]) {
+                left_count += bin.references();
+                *place = left_count;
             }
         }
-        best.map(|(_, axis, bin)| {
-            let union = |bins: &[Bounds]| bins.iter().fold(Bounds::EMPTY, |a, &b| a.union(b));
-            let (left, right) = self.bounds[axis].split_at(bin);
-            Plane {
-                axis,
-                origin: grid.origin[axis],
-                scale: grid.scale[axis],
-                end: 1.0 + bin as f32 / BINS as f32,
-                left_count: self.counts[axis][..bin].iter().sum::<u32>() as usize,
-                left: union(left),
-                right: union(right),
-            }
+        let count = u32x8::splat(count as u32);
+        let sides = |eight: usize| {
+            let left = u32x8::new(left_counts.as_chunks().0[eight]);
+            let right = count.wrapping_add(!left).wrapping_add(u32x8::splat(1));
+            let none = left.equal(u32x8::splat(0)) | left.equal(count);
+            ([left, right].map(f32x8::from_int), (!none).to_bitmask())
+        };
+        let Cheapest { row: axis, at: bin, .. } = splits.cheapest(BINS, sides).0?;
+        let (left, right) = self.0[axis].split_at(bin);
+        Some(Plane {
+            axis,
+            grid: *grid,
+            end: 1.0 + bin as f32 / BINS as f32,
+            left_count: left.iter().map(|bin| bin.references()).sum::<u32>() as usize,
+            left: splits.left(axis, bin, BINS),
+            right: right.iter().fold(Bounds::EMPTY, |all, bin| all.union(bin.bounds())),
         })
     }
 }
@@ -138,10 +172,10 @@ impl Bins {
 pub(super) fn cheapest_plane(references: &[Reference], centres: Bounds) -> Option<Plane> {
     let grid = Grid::new(centres);
     if references.len() <= CHUNK {
-        return Bins::fill(&grid, references).cheapest(&grid, references.len());
+        return Bins::fill::<false>(&grid, references).cheapest(&grid, references.len());
     }
     // Unions in the order of the chunks: signs of zero do not depend on threads either.
-    let chunks = references.par_chunks(CHUNK).map(|chunk| Bins::fill(&grid, chunk));
+    let chunks = references.par_chunks(CHUNK).map(|chunk| Bins::fill::<true>(&grid, chunk));
     let bins = chunks.reduce(|| Bins::EMPTY, |a, b| a.merge(&b));
     bins.cheapest(&grid, references.len())
 }
@@ -164,7 +198,7 @@ mod tests {
             .map(|index| {
                 let (corner, size) = (vector(), [0.0, 0.05, 0.6][index as usize % 3]);
                 let bounds = Aabb::of_points([corner, corner + vector() * size]);
-                Reference { bounds, index, class: 0 }
+                Reference::new(bounds, index, 0)
             })
             .collect()
     }
@@ -172,7 +206,7 @@ mod tests {
     /// Areas times numbers of what lies on either side, from the references themselves; `None` if all lie on one.
     fn cost(references: &[Reference], plane: &Plane) -> Option<f32> {
         let (left, right): (Vec<&Reference>, Vec<&Reference>) =
-            references.iter().partition(|reference| plane.is_left(reference));
+            references.iter().partition(|reference| plane.is_left(reference.bounds().centre()));
         let side = |references: &[&Reference]| {
             let bounds = references.iter().fold(Bounds::EMPTY, |a, reference| a.union(reference.bounds()));
             bounds.half_area() * references.len() as f32
@@ -185,13 +219,14 @@ mod tests {
         for seed in 0..200 {
             let references = boxes([2, 3, 17, 100, 700][seed as usize % 5], seed);
             let [_, centres] = extents(&references);
-            let (grid, found) = (Grid::new(centres), cheapest_plane(&references, centres).expect("a plane"));
+            let found = cheapest_plane(&references, centres).expect("a plane");
             let found_cost = cost(&references, &found).expect("something on either side");
-            let left = references.iter().filter(|reference| found.is_left(reference)).count();
+            let left =
+                references.iter().filter(|reference| found.is_left(reference.bounds().centre())).count();
             assert_eq!(left, found.left_count);
             for (axis, bin) in (0..3).flat_map(|axis| (1..BINS).map(move |bin| (axis, bin))) {
                 let end = 1.0 + bin as f32 / BINS as f32;
-                let other = Plane { axis, origin: grid.origin[axis], scale: grid.scale[axis], end, ..found };
+                let other = Plane { axis, end, ..found };
                 if let Some(cost) = cost(&references, &other) {
                     assert!(found_cost <= cost * 1.0001, "{found_cost}, at bin {bin} of axis {axis} {cost}");
                 }

@@ -127,7 +127,7 @@ impl Target for Filling<'_> {
 
     fn child(&mut self, node: u32, place: usize, root: u32, child: Child) {
         let node = &mut self.part.nodes[(node - self.part.first) as usize];
-        node.set(place, self.tree.node(root).bounds, child);
+        node.set(place, self.tree.node(root).bounds.aabb(), child);
     }
 
     fn leaf(&mut self, class: usize, indices: &[u32]) -> u32 {

@@ -3,7 +3,8 @@
 use super::{
     binary::{self, Binary, Packed},
     binned,
-    reference::{Bounds, Reference},
+    bounds::Bounds,
+    reference::Reference,
 };
 use crate::geometry::Aabb;
 
@@ -45,7 +46,7 @@ impl Links {
         let mut open = vec![(ROOT, 0)];
         while let Some((index, at)) = open.pop() {
             let node = Binary::unpack(&packed[at]);
-            links.nodes[index as usize].bounds = node.bounds;
+            links.nodes[index as usize].bounds = node.bounds.aabb();
             links.nodes[index as usize].below = if node.is_leaf() {
                 Below::Leaf { first: node.first, count: node.leaf_count() as u32 }
             } else {

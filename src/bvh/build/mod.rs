@@ -8,6 +8,7 @@
 mod binary;
 mod binned;
 mod bins;
+mod bounds;
 mod collapse;
 mod links;
 mod morton;
@@ -15,6 +16,7 @@ mod partition;
 mod quality;
 mod reference;
 mod reinsert;
+mod splits;
 mod sweep;
 mod weigh;
 

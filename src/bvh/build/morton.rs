@@ -10,7 +10,8 @@ use rayon::prelude::*;
 use super::{
     binary::{self, Binary, Packed},
     binned::{self, PARALLEL},
-    reference::{Bounds, Reference},
+    bounds::Bounds,
+    reference::Reference,
     sweep::{self, SMALL},
 };
 

@@ -4,7 +4,8 @@ use rayon::prelude::*;
 
 use super::{
     bins::{CHUNK, Plane},
-    reference::{Bounds, Reference},
+    bounds::Bounds,
+    reference::Reference,
 };
 
 /// Bounds of the centres on either side: left, right.
@@ -12,21 +13,22 @@ pub(super) type Centres = [Bounds; 2];
 
 /// Moves what is left of the plane to the front. Returns the bounds of the centres on either side.
 pub(super) fn partition(references: &mut [Reference], plane: &Plane) -> Centres {
-    if references.len() <= CHUNK { serial(references, plane).1 } else { parallel(references, plane) }
+    if references.len() <= CHUNK { serial::<false>(references, plane).1 } else { parallel(references, plane) }
 }
 
-/// Returns also how many are left. Without branches on what is where, which nothing could foretell.
-fn serial(references: &mut [Reference], plane: &Plane) -> (usize, Centres) {
+/// Returns also how many are left. `FAR`: they are among so many that not all are in a cache. Without branches on what is where, which nothing could foretell.
+fn serial<const FAR: bool>(references: &mut [Reference], plane: &Plane) -> (usize, Centres) {
     let [mut left, mut right] = [Bounds::EMPTY; 2];
     let mut left_count = 0;
     for i in 0..references.len() {
         let reference = references[i];
-        let is_left = plane.is_left(&reference);
-        let centre = reference.bounds().centre();
-        // What goes to one side is nothing to the other.
-        let centre = Bounds::point(centre);
-        left = left.union(centre.or_empty(!is_left));
-        right = right.union(centre.or_empty(is_left));
+        if FAR {
+            references[i].ask_for_later();
+        }
+        let centre = reference.bounds().shrunk();
+        let is_left = plane.is_left(centre.max());
+        left = left.union_if(centre, is_left);
+        right = right.union_if(centre, !is_left);
         references[i] = references[left_count];
         references[left_count] = reference;
         left_count += usize::from(is_left);
@@ -37,7 +39,7 @@ fn serial(references: &mut [Reference], plane: &Plane) -> (usize, Centres) {
 /// Each chunk by itself, then what stands on the wrong side of the middle changes places.
 fn parallel(references: &mut [Reference], plane: &Plane) -> Centres {
     let chunks: Vec<(usize, Centres)> =
-        references.par_chunks_mut(CHUNK).map(|chunk| serial(chunk, plane)).collect();
+        references.par_chunks_mut(CHUNK).map(|chunk| serial::<true>(chunk, plane)).collect();
     let middle: usize = chunks.iter().map(|(left_count, _)| left_count).sum();
     let (mut wrong_left, mut wrong_right) = (vec![], vec![]);
     let mut at = 0;

@@ -46,7 +46,7 @@ impl Bvh {
         // From here on only leaves name primitives.
         let names = Names::new(references);
         let choices = Choices::new(&binary, &names);
-        let Aabb { min, max } = Binary::unpack(&binary[0]).bounds;
+        let Aabb { min, max } = Binary::unpack(&binary[0]).bounds.aabb();
         let (nodes, slots) = collapse(Weighed { nodes: &binary, choices: &choices, names: &names });
         Self { nodes, slots, reach: min.abs().max(max.abs()) }
     }

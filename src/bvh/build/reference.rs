@@ -1,37 +1,65 @@
 //! What the builder sees of a primitive: a box, a number, a class.
 
-use glam::{Vec3A, Vec3Swizzles, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 
+use super::bounds::Bounds;
 use crate::geometry::Aabb;
-use crate::simd::{Mask, Real, f32x8};
+use crate::simd::{prefetch, u32x8};
 
-/// A primitive, as the builder sees it: 32 bytes, half a cache line.
+/// References in half a page.
+const AHEAD: usize = 64;
+
+/// A primitive, as the builder sees it: 32 bytes, half a cache line. A row of lanes, so that it is moved as a whole:
+/// what is written in parts can't be read as a whole before it has left the processor's store buffer.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
-pub struct Reference {
-    /// Its box; no coordinate beyond half of the greatest float.
-    pub bounds: Aabb,
-    /// Its number, handed back in [`Bvh::slots`](crate::bvh::Bvh::slots).
-    pub index: u32,
-    /// Leaves hold references of one class.
-    pub class: u8,
-}
+pub struct Reference(u32x8);
 
 impl Reference {
-    /// The box in a register: two loads of what stands side by side in memory, a coordinate too many.
+    /// A box, no coordinate of which is beyond half of the greatest float; the number that is handed back in
+    /// [`Bvh::slots`](crate::bvh::Bvh::slots); and a class: leaves hold references of one.
+    #[inline]
+    pub fn new(bounds: Aabb, index: u32, class: u8) -> Self {
+        let [x0, y0, z0] = (-bounds.min).to_array().map(f32::to_bits);
+        let [x1, y1, z1] = bounds.max.to_array().map(f32::to_bits);
+        Self(u32x8::new([x0, y0, z0, index, x1, y1, z1, u32::from(class)]))
+    }
+
+    /// Its box.
+    #[inline]
+    pub fn aabb(&self) -> Aabb {
+        self.bounds().aabb()
+    }
+
+    /// Its box in a register.
     #[inline]
     pub(super) fn bounds(&self) -> Bounds {
-        let Aabb { min, max } = self.bounds;
-        let low = Vec4::new(min.x, min.y, min.z, max.x);
-        let high = Vec4::new(min.z, max.x, max.y, max.z).yzww();
-        Bounds::halves(-low, high)
+        Bounds::of_row(self.0)
+    }
+
+    /// Its number.
+    #[inline]
+    pub(super) fn index(&self) -> u32 {
+        self.0.to_array()[3]
+    }
+
+    /// Its class.
+    #[inline]
+    pub(super) fn class(&self) -> u8 {
+        self.0.to_array()[7] as u8
+    }
+
+    /// Asks memory for what stands some places on, while there is something else to do: what the processor foretells
+    /// by itself ends with a page.
+    #[inline]
+    pub(super) fn ask_for_later(&self) {
+        prefetch::<1>(std::ptr::from_ref(self).wrapping_add(AHEAD).cast());
     }
 
     /// Twice the middle of the box along an axis: what [`Bounds::centre`] has there, to the bit.
     #[inline]
     pub(super) fn centre(&self, axis: usize) -> f32 {
-        self.bounds.min[axis] + self.bounds.max[axis]
+        let row = self.0.to_array();
+        f32::from_bits(row[4 + axis]) - f32::from_bits(row[axis])
     }
 }
 
@@ -46,76 +74,8 @@ impl Names {
     /// Gives the boxes' memory back.
     pub(super) fn new(references: Vec<Reference>) -> Self {
         let mut names = Self::default();
-        let both = references.par_iter().map(|reference| (reference.index, reference.class));
+        let both = references.par_iter().map(|reference| (reference.index(), reference.class()));
         both.unzip_into_vecs(&mut names.indices, &mut names.classes);
         names
-    }
-}
-
-/// A box in one register: −min and max, a lane to spare after each. A union is one instruction.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Bounds(f32x8);
-
-impl Bounds {
-    pub(super) const EMPTY: Self = Self(f32x8::new([f32::NEG_INFINITY; 8]));
-
-    #[inline]
-    fn halves(low: Vec4, high: Vec4) -> Self {
-        let ([a, b, c, d], [e, f, g, h]) = (low.to_array(), high.to_array());
-        Self(f32x8::new([a, b, c, d, e, f, g, h]))
-    }
-
-    /// The box of a point.
-    #[inline]
-    pub(super) fn point(p: Vec3A) -> Self {
-        Self::halves((-p).extend(0.0), p.extend(0.0))
-    }
-
-    #[inline]
-    pub(super) fn min(self) -> Vec3A {
-        let [x, y, z, ..] = self.0.to_array();
-        -Vec3A::new(x, y, z)
-    }
-
-    #[inline]
-    pub(super) fn max(self) -> Vec3A {
-        let [.., x, y, z, _] = self.0.to_array();
-        Vec3A::new(x, y, z)
-    }
-
-    #[inline]
-    pub(super) fn union(self, other: Self) -> Self {
-        Self(self.0.max(other.0))
-    }
-
-    /// The empty box instead, without a branch.
-    #[inline]
-    pub(super) fn or_empty(self, empty: bool) -> Self {
-        Self(f32x8::select(Mask::splat(empty), Self::EMPTY.0, self.0))
-    }
-
-    /// Half of the surface area, 0 for the empty box.
-    #[inline]
-    pub(super) fn half_area(self) -> f32 {
-        let d = (self.max() - self.min()).max(Vec3A::ZERO);
-        let faces = d * d.yzx();
-        faces.x + faces.y + faces.z
-    }
-
-    /// Twice the middle: order and ratios are the same, and it costs one instruction.
-    #[inline]
-    pub(super) fn centre(self) -> Vec3A {
-        self.min() + self.max()
-    }
-
-    pub(super) fn aabb(self) -> Aabb {
-        Aabb { min: self.min().into(), max: self.max().into() }
-    }
-}
-
-impl From<Aabb> for Bounds {
-    #[inline]
-    fn from(aabb: Aabb) -> Self {
-        Self::halves((-aabb.min).extend(0.0), aabb.max.extend(0.0))
     }
 }

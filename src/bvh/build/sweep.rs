@@ -6,18 +6,36 @@
 use super::{
     MAX_LEAF,
     binary::{Binary, Packed},
-    reference::{Bounds, Reference},
+    bounds::Bounds,
+    reference::Reference,
+    splits::{Cheapest, PLACES, ROW, Splits},
 };
 use crate::simd::{Mask, Real, f32x8};
 
 /// References of the largest subtree that is built here.
-pub(super) const SMALL: usize = 16;
+pub(super) const SMALL: usize = ROW;
+
+/// For rows of so many: how many lie left of each split.
+const LEFT_COUNTS: [[f32; PLACES]; SMALL + 1] = {
+    let mut all = [[0.0; PLACES]; SMALL + 1];
+    let mut count = 2;
+    while count <= SMALL {
+        let mut place = 0;
+        while place < 3 * (count - 1) {
+            all[count][place] = (place % (count - 1) + 1) as f32;
+            place += 1;
+        }
+        count += 1;
+    }
+    all
+};
 
 /// A few references, sorted along each axis.
 struct Sweep {
     bounds: [Bounds; SMALL],
     classes: [u8; SMALL],
     orders: [[u8; SMALL]; 3],
+    splits: Splits,
 }
 
 /// Builds the subtree over at most [`SMALL`] references and puts them into leaf order. Returns how many
@@ -61,7 +79,7 @@ impl Sweep {
                 order[rank % SMALL] = i as u8;
             }
         }
-        Self { bounds, classes: all.each_ref().map(|reference| reference.class), orders }
+        Self { bounds, classes: all.each_ref().map(Reference::class), orders, splits: Splits::EMPTY }
     }
 
     fn bounds(&self, i: u8) -> Bounds {
@@ -71,11 +89,11 @@ impl Sweep {
     /// Splits what stands from `low` to `high` in each order.
     fn split(&mut self, low: usize, high: usize, bounds: Bounds, first: u32, nodes: &mut [Packed]) -> usize {
         let count = high - low;
-        let best = if count > 1 { self.cheapest(low, high) } else { None };
-        let mut chosen = best.map(|(_, axis, left_count)| (axis, left_count));
+        let best = if count > 1 { Some(self.cheapest(low, high)) } else { None };
+        let mut chosen = best.map(|best| (best.row, best.at));
         if count <= MAX_LEAF {
             let area = bounds.half_area();
-            let split_cost = best.map_or(f32::INFINITY, |(cost, ..)| cost);
+            let split_cost = best.map_or(f32::INFINITY, |best| best.cost);
             if self.sort_classes(low, high) {
                 chosen = Some((0, self.first_class_count(low, high)));
             } else if count as f32 * area <= split_cost + area {
@@ -86,7 +104,9 @@ impl Sweep {
         }
         let (axis, left_count) = chosen.unwrap_or((0, count / 2));
         let middle = low + left_count;
-        self.keep_orders(low, middle, high, axis);
+        if count > 2 {
+            self.keep_orders(low, middle, high, axis);
+        }
         let union = |run: &[u8]| run.iter().fold(Bounds::EMPTY, |a, &i| a.union(self.bounds(i)));
         let (left, right) = (union(&self.orders[axis][low..middle]), union(&self.orders[axis][middle..high]));
         let right_at = 1 + self.split(low, middle, left, first, &mut nodes[1..]);
@@ -94,42 +114,42 @@ impl Sweep {
         right_at + self.split(middle, high, right, first + left_count as u32, &mut nodes[right_at..])
     }
 
-    /// Cost, axis and how many go left.
-    fn cheapest(&self, low: usize, high: usize) -> Option<(f32, usize, usize)> {
+    /// The cheapest split of at least two.
+    fn cheapest(&mut self, low: usize, high: usize) -> Cheapest {
         let count = high - low;
-        let mut best: Option<(f32, usize, usize)> = None;
-        let mut middle = f32::INFINITY;
-        for axis in 0..3 {
-            let order = &self.orders[axis][low..high];
-            let mut right_costs = [0.0; SMALL];
-            let mut right = Bounds::EMPTY;
-            for i in (1..count).rev() {
-                right = right.union(self.bounds(order[i]));
-                right_costs[i % SMALL] = right.half_area() * (count - i) as f32;
-            }
-            let mut left = Bounds::EMPTY;
-            for i in 1..count {
-                left = left.union(self.bounds(order[i - 1]));
-                let cost = left.half_area() * i as f32 + right_costs[i % SMALL];
-                if axis == 0 && i == count / 2 {
-                    middle = cost;
-                }
-                if best.is_none_or(|(least, ..)| cost < least) {
-                    best = Some((cost, axis, i));
-                }
-            }
+        if let [a, b] = self.orders[0][low..high] {
+            // The same along each axis.
+            let cost = self.bounds(a).half_area() + self.bounds(b).half_area();
+            return Cheapest { cost, row: 0, at: 1 };
         }
+        for (axis, order) in self.orders.iter().enumerate() {
+            let order = &order[low..high];
+            self.splits.fill(axis, count, |i| self.bounds[usize::from(order[i]) % SMALL]);
+        }
+        let sides = |eight: usize| {
+            let left = f32x8::new(LEFT_COUNTS[count].as_chunks().0[eight]);
+            let beyond = (8 * eight + 8).saturating_sub(3 * (count - 1));
+            ([left, f32x8::splat(count as f32) - left], 0xff >> beyond)
+        };
+        let (best, costs) = self.splits.cheapest(count, sides);
         // Among equals the middle, so that equal boxes make a shallow tree.
-        best.map(|best| if middle <= best.0 { (middle, 0, count / 2) } else { best })
+        let at = count / 2;
+        let middle = costs[(at - 1) / 8].lane((at - 1) % 8);
+        match best {
+            Some(best) if best.cost < middle => best,
+            _ => Cheapest { cost: middle, row: 0, at },
+        }
     }
 
     /// Lets the other orders follow a split of one at `middle`.
     fn keep_orders(&mut self, low: usize, middle: usize, high: usize, axis: usize) {
+        // Of two the orders do not matter, but for the first, in which they stay.
+        let others = if (middle - low).max(high - middle) > 2 { 3 } else { 1 };
         let mut is_left = 0u32;
         for &i in &self.orders[axis][low..middle] {
             is_left |= 1 << i;
         }
-        for other in (0..3).filter(|&other| other != axis) {
+        for other in (0..others).filter(|&other| other != axis) {
             let order = &mut self.orders[other];
             let (mut left, mut right) = (low, 0);
             let mut rights = [0; SMALL];
@@ -197,13 +217,13 @@ mod tests {
                 .map(|index| {
                     let corner = vector();
                     let bounds = Aabb::of_points([corner, corner + vector() * [0.02, 0.9][round % 2]]);
-                    Reference { bounds, index, class: 0 }
+                    Reference::new(bounds, index, 0)
                 })
                 .collect();
             let mut all = [references[0]; SMALL];
             all[..count].copy_from_slice(&references);
-            let (told, axis, left_count) = Sweep::new(&all, count).cheapest(0, count).expect("a split");
-            let found = cost(&references, axis, left_count);
+            let Cheapest { cost: told, row, at } = Sweep::new(&all, count).cheapest(0, count);
+            let found = cost(&references, row, at);
             assert!((told - found).abs() <= 1e-4 * found, "{told} for what costs {found}");
             for (axis, left_count) in (0..3).flat_map(|axis| (1..count).map(move |left| (axis, left))) {
                 assert!(found <= cost(&references, axis, left_count) * 1.0001);

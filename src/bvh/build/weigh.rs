@@ -73,7 +73,7 @@ fn leaf_cost(count: usize) -> f32 {
 /// Fills in the choices for the run of `nodes[0]`. Returns the costs and the number of references.
 fn weigh(nodes: &[Packed], choices: &mut [u32], names: &Names) -> (Costs, usize) {
     let node = Binary::unpack(&nodes[0]);
-    let area = node.bounds.half_area();
+    let area = node.bounds.aabb().half_area();
     if node.is_leaf() {
         let count = node.leaf_count();
         choices[0] = count as u32;

@@ -9,7 +9,7 @@ fn boxes() -> Vec<Aabb> {
 }
 
 fn tree(boxes: &[Aabb]) -> Bvh {
-    let reference = |(i, &bounds): (usize, &Aabb)| Reference { bounds, index: i as u32, class: 0 };
+    let reference = |(i, &bounds): (usize, &Aabb)| Reference::new(bounds, i as u32, 0);
     Bvh::build(boxes.iter().enumerate().map(reference).collect())
 }
 
