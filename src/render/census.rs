@@ -128,7 +128,8 @@ pub fn census(scene: &Scene) -> Census {
         fn run<I: Integrator>(self, integrator: &I) -> Census {
             let count = |tile: &Tile| {
                 let arena = Bump::new();
-                Wavefront::new(&arena, self.0, integrator, &Settings::default()).census(tile, 0)
+                let tracer = &mut Tracer::new(());
+                Wavefront::new((&arena, tracer), self.0, integrator, &Settings::default()).census(tile, 0)
             };
             let add = |mut sum: Census, tile| {
                 sum += tile;

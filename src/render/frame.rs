@@ -29,6 +29,7 @@ use super::{
     wavefront::Wavefront,
 };
 use crate::{
+    bvh::Tracer,
     compile::Scene,
     film::{self, Film, Tile, TileFilm, spread::Spread, sums::Sums},
     picture::{Picture, Place},
@@ -100,11 +101,17 @@ pub struct Frame {
 }
 
 /// What a thread works in.
-#[derive(Debug, Default)]
 struct Memory {
     arena: Bump,
+    tracer: Tracer,
     /// Of sums that are not needed any more: one, or none.
     spare: Vec<Sums>,
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        Self { arena: Bump::new(), tracer: Tracer::new(()), spare: Vec::new() }
+    }
 }
 
 /// A tile of the plan.
@@ -188,10 +195,10 @@ impl Frame {
             let take = || self.cells.get(next.fetch_add(1, Ordering::Relaxed));
             rayon::broadcast(|thread| {
                 let Some(first) = take() else { return };
-                let Memory { arena, spare } = &mut *lock(&memory[thread.index()]);
+                let Memory { arena, tracer, spare } = &mut *lock(&memory[thread.index()]);
                 arena.reset();
                 let spare = RefCell::new(spare);
-                let mut wavefront = Wavefront::new(arena, scene, integrator, settings);
+                let mut wavefront = Wavefront::new((arena, tracer), scene, integrator, settings);
                 for cell in std::iter::once(first).chain(std::iter::from_fn(take)) {
                     let visit = Visit { cell, frame: self, until, total, done: &done, watch, spare: &spare };
                     match settings.backend {

@@ -45,7 +45,12 @@ pub use trace::Route;
 
 use bumpalo::Bump;
 
-use crate::{bvh::Traversal, compile::Scene, picture::Picture, scene};
+use crate::{
+    bvh::{Tracer, Traversal},
+    compile::Scene,
+    picture::Picture,
+    scene,
+};
 use integrator::Integrator;
 use irradiance::Irradiance;
 use part::{Difference, Part, differ};
@@ -196,7 +201,8 @@ pub fn replay(scene: &Scene, settings: &Settings, pixel: (u32, u32), sample: u32
             let values = match settings.backend {
                 Backend::Packet => {
                     let arena = Bump::new();
-                    Wavefront::new(&arena, scene, integrator, settings).sample(pixel, sample)
+                    let tracer = &mut Tracer::new(());
+                    Wavefront::new((&arena, tracer), scene, integrator, settings).sample(pixel, sample)
                 }
                 Backend::Scalar => {
                     let (mut traversal, mut statistics) = (Traversal::new(()), Statistics::default());

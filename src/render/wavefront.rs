@@ -49,7 +49,7 @@ pub(super) struct Wavefront<'a, I> {
     sort: bool,
     channels: usize,
     route: Route,
-    tracer: Tracer,
+    tracer: &'a mut Tracer,
     paths: Paths<'a>,
     hits: Hits<'a>,
     /// Material of each hit; one more than the last material for a miss.
@@ -69,7 +69,12 @@ pub(super) struct Wavefront<'a, I> {
 }
 
 impl<'a, I: Integrator> Wavefront<'a, I> {
-    pub(super) fn new(arena: &'a Bump, scene: &'a Scene, integrator: &'a I, settings: &Settings) -> Self {
+    pub(super) fn new(
+        (arena, tracer): (&'a Bump, &'a mut Tracer),
+        scene: &'a Scene,
+        integrator: &'a I,
+        settings: &Settings,
+    ) -> Self {
         let (lit, channels) = (integrator.channels().len(), integrator.all_channels(scene).len());
         let layers = (channels > lit).then(|| Layers::new(arena, scene, lit..channels));
         Self {
@@ -79,7 +84,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             sort: settings.sort,
             channels,
             route: settings.route,
-            tracer: Tracer::new(()),
+            tracer,
             paths: Paths::new(arena),
             hits: Hits::new(arena),
             keys: BumpVec::new_in(arena),

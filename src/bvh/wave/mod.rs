@@ -29,13 +29,14 @@ const AT_ENDS: u32 = 6;
 
 /// Slots of a wave and the rays that wait for one, kept from stream to stream.
 pub(super) struct Wave {
-    slots: Box<[Slot; SLOTS]>,
+    /// [`SLOTS`] of them, made in their place: an array would be made on the stack first.
+    slots: Vec<Slot>,
     feed: Feed,
 }
 
 impl Default for Wave {
     fn default() -> Self {
-        Self { slots: Box::new(std::array::from_fn(|_| Slot::new())), feed: Feed::default() }
+        Self { slots: (0..SLOTS).map(|_| Slot::new()).collect(), feed: Feed::default() }
     }
 }
 
@@ -108,6 +109,7 @@ impl Bvh {
         tally: &mut T,
     ) {
         let Wave { slots, feed } = wave;
+        let Some(slots) = slots.first_chunk_mut() else { return };
         feed.begin();
         let (mut nodes, mut sets) = (0, Sets { leaves: ALL, done: ALL });
         let mut fresh = true;
