@@ -240,12 +240,20 @@ fn the_bound_on_margins_is_one() {
         let (dir, triangle) = (random.vector(), Triangle::new(v0, v1, v2));
         let lanes =
             TriangleLanes::<f32> { v0: v0.into(), v1: v1.into(), v2: v2.into(), edges: triangle.edges() };
-        let bound = lanes.aspect(org.into()).margin(lanes.edges, rounding(dir.into()));
+        let aspect = lanes.aspect(org.into());
+        let bound = aspect.margin(lanes.edges, rounding(dir.into()));
+        // For this direction, and for a bundle in which this is one of several.
+        let other = roundings(random.vector().into());
+        let towards = [roundings(dir.into()), roundings(dir.into()).max(other)];
         let (e, d) = ((v1 - v0).abs() + (v2 - v0).abs(), dir.abs().as_dvec3());
         let (a, e) = (((org - v0).abs() + e).as_dvec3(), e.as_dvec3());
         let products = DVec3::new(a.y * e.z + a.z * e.y, a.z * e.x + a.x * e.z, a.x * e.y + a.y * e.x);
         let margin = 6.0 * f64::from(f32::EPSILON) * d.dot(products);
-        assert!(f64::from(bound) >= margin, "{bound} {margin} {triangle:?} {org} {dir}");
+        for bound in [bound, aspect.margin_towards(towards[0]), aspect.margin_towards(towards[1])] {
+            assert!(f64::from(bound) >= margin, "{bound} {margin} {triangle:?} {org} {dir}");
+        }
+        // The same again, by a fifth more: what it is there for is to be smaller than the bound.
+        assert!(f64::from(aspect.margin_towards(towards[0])) <= 1.21 * margin + 1e-33);
     }
 }
 
