@@ -44,6 +44,12 @@ impl<'a> Layers<'a> {
         Self { aovs, first: channels.start, values, rows: BumpVec::new_in(arena), eights, quads }
     }
 
+    /// Do any of them need random numbers?
+    #[inline]
+    pub(super) fn draws(&self) -> bool {
+        self.aovs.draws
+    }
+
     /// Room for so many pixels. Where nothing will be said of them, it is said now, to their `light` too.
     pub(super) fn clear(&mut self, len: usize, light: Option<&mut [Quad]>) {
         self.rows.resize(len * self.eights, f32x8::zero());
