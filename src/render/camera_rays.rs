@@ -5,61 +5,34 @@ use crate::compile::Scene;
 use crate::film::Tile;
 use crate::geometry::RayLanes;
 use crate::math::{PathKey, Sampler};
-use crate::simd::{Bits, LANES, Real, f32x8, u32x8};
+use crate::simd::{Bits, LANES, Real, u32x8};
 
 /// A tile's pixels, in the order of its first paths.
 pub(super) struct Pixels {
-    /// Of the tile.
-    size: (u32, u32),
     /// The places of the tile's pixels in the order of paths, row by row.
     pub(super) paths: Vec<u32>,
-    /// Column and row in the tile, in the order of paths; the last is repeated to fill a packet that begins anywhere.
-    places: [Vec<u32>; 2],
-    /// Column and row in the film, and the [`PathKey`]s, likewise.
+    /// Column and row in the film, and the [`PathKey`]s, in the order of paths; the last is repeated to fill a packet.
     columns: [Vec<u32>; 3],
 }
 
 impl Pixels {
     pub(super) fn new(scene: &Scene, tile: &Tile) -> Self {
-        let mut places = morton(tile);
-        let mut paths = vec![0; places.len()];
-        for (path, &(x, y)) in (0..).zip(&places) {
+        let order = morton(tile);
+        let mut paths = vec![0; order.len()];
+        let mut columns = [0; 3].map(|_: u32| Vec::with_capacity(order.len() + LANES));
+        for (path, &(x, y)) in (0..).zip(&order) {
             paths[(y * tile.width + x) as usize] = path;
+            let (x, y) = (tile.x + x, tile.y + y);
+            columns
+                .iter_mut()
+                .zip([x, y, keys::<f32>(scene, x, y)])
+                .for_each(|(column, value)| column.push(value));
         }
-        let last = places.last().copied().unwrap_or_default();
-        places.resize((places.len() + LANES).next_multiple_of(LANES), last);
-        let columns = std::array::from_fn(|_| vec![0; places.len()]);
-        let mut pixels = Self {
-            size: (tile.width, tile.height),
-            paths,
-            places: <(Vec<_>, Vec<_>)>::from_iter(places).into(),
-            columns,
-        };
-        pixels.go(scene, tile);
-        pixels
-    }
-
-    /// Those of another tile: most are of one size, and have one order.
-    pub(super) fn moved(mut self, scene: &Scene, tile: &Tile) -> Self {
-        if self.size != (tile.width, tile.height) {
-            return Self::new(scene, tile);
+        for column in &mut columns {
+            let last = column.last().copied().unwrap_or_default();
+            column.resize(order.len() + LANES, last);
         }
-        self.go(scene, tile);
-        self
-    }
-
-    /// To a tile of the same size.
-    fn go(&mut self, scene: &Scene, tile: &Tile) {
-        let [xs, ys] = self.places.each_ref().map(|places| places.as_chunks::<LANES>().0);
-        let columns = self.columns.each_mut().map(|column| column.as_chunks_mut::<LANES>().0);
-        let [columns, rows, keys] = columns.map(|eights| eights.iter_mut());
-        for ((((x, y), column), row), key) in xs.iter().zip(ys).zip(columns).zip(rows).zip(keys) {
-            let x = u32x8::new(*x).wrapping_add(u32x8::splat(tile.x));
-            let y = u32x8::new(*y).wrapping_add(u32x8::splat(tile.y));
-            *column = x.to_array();
-            *row = y.to_array();
-            *key = self::keys::<f32x8>(scene, x, y).to_array();
-        }
+        Self { paths, columns }
     }
 
     /// Pixels.
@@ -129,7 +102,6 @@ pub(super) fn keys<R: Real>(scene: &Scene, x: R::Bits, y: R::Bits) -> R::Bits {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{compile::compile, scene::SceneDescription};
 
     #[test]
     fn eight_pixels_in_a_row_are_a_block_of_4x2() {
@@ -142,26 +114,5 @@ mod tests {
         sorted.sort_unstable();
         sorted.dedup();
         assert_eq!(sorted.len(), tile.len());
-    }
-
-    #[test]
-    fn another_tile_has_its_own_pixels() {
-        let scene = compile(&SceneDescription::default()).expect("it has nothing in it");
-        let tile = |x, y, width, height| Tile { x, y, width, height };
-        let mut pixels = Pixels::new(&scene, &tile(5, 7, 16, 3));
-        for tile in [tile(21, 7, 16, 3), tile(37, 7, 9, 3), tile(5, 10, 9, 3), tile(5, 10, 3, 9)] {
-            pixels = pixels.moved(&scene, &tile);
-            assert_eq!(pixels.len(), tile.len());
-            let order = morton(&tile);
-            for (path, &(x, y)) in order.iter().enumerate() {
-                assert_eq!(pixels.paths[(y * tile.width + x) as usize] as usize, path);
-                for (lane, times) in [(0, 1), (path.min(7), 1), (3, 4)] {
-                    let first = path - if times == 1 { lane } else { 0 };
-                    let [columns, rows, keys] = pixels.packet(first, times).map(|lanes| lanes.lane(lane));
-                    let (x, y) = (tile.x + x, tile.y + y);
-                    assert_eq!((columns, rows, keys), (x, y, self::keys::<f32>(&scene, x, y)), "{path}");
-                }
-            }
-        }
     }
 }

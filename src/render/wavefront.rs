@@ -50,8 +50,6 @@ pub(super) struct Wavefront<'a, I> {
     channels: usize,
     route: Route,
     tracer: Tracer,
-    /// Of the tile before.
-    pixels: Option<Pixels>,
     paths: Paths<'a>,
     hits: Hits<'a>,
     /// Material of each hit; one more than the last material for a miss.
@@ -83,7 +81,6 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             channels,
             route: settings.route,
             tracer: Tracer::new(()),
-            pixels: None,
             paths: Paths::new(arena),
             hits: Hits::new(arena),
             keys: BumpVec::new_in(arena),
@@ -107,20 +104,16 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     /// Samples of a tile, for as long as the visit has any.
     pub(super) fn render(&mut self, tile: &Tile, visit: &Visit<'_>) {
         let Some(mut samples) = visit.next() else { return };
-        let pixels = match self.pixels.take() {
-            Some(pixels) => pixels.moved(self.scene, tile),
-            None => Pixels::new(self.scene, tile),
-        };
+        let pixels = Pixels::new(self.scene, tile);
         loop {
             let mut statistics = Statistics::default();
             self.take(&pixels, &samples, &mut statistics);
             visit.finish(samples.clone(), statistics, |film| self.deliver(&pixels, film, samples.len()));
             match visit.next() {
                 Some(next) => samples = next,
-                None => break,
+                None => return,
             }
         }
-        self.pixels = Some(pixels);
     }
 
     /// Adds what so many samples have brought to the film.
