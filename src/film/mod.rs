@@ -5,12 +5,14 @@
 //! counted and kept out.
 
 mod filter;
+mod samples;
 pub mod spread;
 pub mod sums;
 mod tile;
 
 pub use filter::Filter;
-pub use tile::{GREATEST, Tile, TileFilm, tiles};
+pub use samples::{GREATEST, Samples};
+pub use tile::{Tile, TileFilm, tiles};
 
 use crate::picture::{Channel, Picture};
 use sums::Sums;
@@ -73,9 +75,10 @@ impl Band<'_> {
     pub fn place(&mut self, tile: &Tile, total: &Sums) {
         let columns = tile.width as usize;
         let first = (tile.y - self.first) as usize * self.width + tile.x as usize;
-        for (c, plane) in self.planes.iter_mut().enumerate() {
-            for (y, row) in plane[first..].chunks_mut(self.width).take(tile.height as usize).enumerate() {
-                total.means(c, y * columns, &mut row[..columns]);
+        // A row of the tile stays near until all channels have taken theirs.
+        for y in 0..tile.height as usize {
+            for (c, plane) in self.planes.iter_mut().enumerate() {
+                total.means(c, y * columns, &mut plane[first + y * self.width..][..columns]);
             }
         }
     }

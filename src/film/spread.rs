@@ -70,10 +70,8 @@ mod tests {
     fn spread(blocks: &[f32]) -> Spread {
         let mut spread = Spread::new(1);
         for &value in blocks {
-            let mut sums = Sums::new(1, 3);
-            sums.add(0, 1.0, |_| value);
-            sums.add(0, 1.0, |_| value);
-            spread.add(&sums);
+            let sums = Sums::from_planes(&[2.0 * value; 3], &[2.0], vec![2]);
+            spread.add(&sums.expect("one pixel, three channels"));
         }
         spread
     }

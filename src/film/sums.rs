@@ -14,9 +14,6 @@
 //! pieces: samples may be rendered in several goes, on several machines, and end in the same bits. Besides,
 //! rounding grows like the logarithm of the number of samples, not like the number.
 
-use super::GREATEST;
-use crate::simd::{LANES, Real, f32x8};
-
 /// Samples that are added one after the other.
 pub const BLOCK: u32 = 16;
 
@@ -75,53 +72,14 @@ impl Sums {
 
     /// A channel's sums, pixel after pixel; the channel behind the last is what the samples of each pixel count together.
     pub fn plane(&self, channel: usize) -> impl Iterator<Item = f32> {
-        self.plane_from(channel, 0)
-    }
-
-    /// The same from the pixel `first` on.
-    fn plane_from(&self, channel: usize, first: usize) -> impl Iterator<Item = f32> {
-        let quads = quads(self.channels);
-        let rows = self.rows[first * quads..].chunks_exact(quads);
+        let rows = self.rows.chunks_exact(quads(self.channels));
         rows.map(move |row| row[channel / 4][channel % 4])
     }
 
-    fn number(&mut self, pixel: usize, number: usize) -> &mut f32 {
+    /// One of the numbers in a pixel's row.
+    pub(super) fn number(&mut self, pixel: usize, number: usize) -> &mut f32 {
         let row = pixel * quads(self.channels);
         &mut self.rows[row + number / 4][number % 4]
-    }
-
-    /// The same memory, of no samples.
-    pub(super) fn cleared(mut self) -> Self {
-        self.rows.fill([0.0; 4]);
-        self.counts.fill(0);
-        self
-    }
-
-    /// Adds to a pixel a sample of a weight: `value(c)` for each channel c.
-    pub(super) fn add(&mut self, pixel: usize, weight: f32, value: impl Fn(usize) -> f32) {
-        for c in 0..self.channels {
-            *self.number(pixel, c) += value(c) * weight;
-        }
-        *self.number(pixel, self.channels) += weight;
-        self.counts[pixel] += 1;
-    }
-
-    /// The same of a row that [`quads`] describes, if none of its numbers is too great. Is it there now?
-    ///
-    /// `FIRST` says that there was none: sums are 0, and are not read. To a system that gives memory out when it is touched,
-    /// reading it and then writing it is touching it twice, and telling all threads in between.
-    #[inline]
-    #[must_use]
-    pub(super) fn add_row<const FIRST: bool>(&mut self, pixel: usize, weight: f32, row: &[Quad]) -> bool {
-        let sums = &mut self.rows[pixel * row.len()..][..row.len()];
-        // Of three colours, and of six layers besides, in registers.
-        let added = match row.len() {
-            1 => add_quads::<1, FIRST>(sums, row, weight),
-            5 => add_quads::<5, FIRST>(sums, row, weight),
-            _ => add_some::<FIRST>(sums, row, weight),
-        };
-        self.counts[pixel] = u32::from(added) + if FIRST { 0 } else { self.counts[pixel] };
-        added
     }
 
     /// These and later ones.
@@ -139,11 +97,20 @@ impl Sums {
     /// Divided by their weights, so that what is the same everywhere stays the same; but a few samples of
     /// both signs may weigh nothing together, and are then divided by their number.
     pub fn means(&self, channel: usize, first: usize, out: &mut [f32]) {
-        let sums = self.plane_from(channel, first).zip(self.plane_from(self.channels, first));
-        for ((mean, (sum, weight)), &count) in out.iter_mut().zip(sums).zip(&self.counts[first..]) {
+        let (quads, last) = (quads(self.channels), self.channels);
+        let rows = self.rows[first * quads..].chunks_exact(quads);
+        for ((mean, row), &count) in out.iter_mut().zip(rows).zip(&self.counts[first..]) {
+            let (sum, weight) = (row[channel / 4][channel % 4], row[last / 4][last % 4]);
             let quotient = sum / if weight > 0.0 { weight } else { count as f32 };
             *mean = if count == 0 { 0.0 } else { quotient };
         }
+    }
+
+    /// A pixel's row, and how many samples it has.
+    #[inline]
+    pub(super) fn row(&mut self, pixel: usize) -> (&mut [Quad], &mut u32) {
+        let quads = quads(self.channels);
+        (&mut self.rows[pixel * quads..][..quads], &mut self.counts[pixel])
     }
 
     #[cfg(test)]
@@ -152,45 +119,6 @@ impl Sums {
         self.means(channel, pixel, &mut mean);
         mean[0]
     }
-}
-
-/// Is no number too great for a sum?
-#[inline]
-fn is_kept(numbers: f32x8) -> bool {
-    numbers.abs().le(f32x8::splat(GREATEST)).all()
-}
-
-/// A row of a length that is known.
-#[inline(always)]
-fn add_quads<const N: usize, const FIRST: bool>(sums: &mut [Quad], row: &[Quad], weight: f32) -> bool {
-    match (<&mut [Quad; N]>::try_from(sums), <&[Quad; N]>::try_from(row)) {
-        (Ok(sums), Ok(row)) => add_some::<FIRST>(sums, row, weight),
-        _ => false,
-    }
-}
-
-#[inline(always)]
-fn add_some<const FIRST: bool>(sums: &mut [Quad], row: &[Quad], weight: f32) -> bool {
-    let (sums, last_sums) = sums.as_flattened_mut().as_chunks_mut::<LANES>();
-    let (row, last) = row.as_flattened().as_chunks::<LANES>();
-    let (last_sums, last) = (last_sums.as_chunks_mut::<4>().0, last.as_chunks::<4>().0);
-    let weights = f32x8::splat(weight);
-    let more = |row: &[f32; LANES]| f32x8::new(*row) * weights;
-    let last_more = |row: &Quad| row.map(|number| number * weight);
-    let mut kept = true;
-    row.iter().for_each(|row| kept &= is_kept(more(row)));
-    last.iter().for_each(|row| kept &= is_kept(f32x8::of_halves(last_more(row), [0.0; 4])));
-    if kept {
-        for (sums, row) in sums.iter_mut().zip(row) {
-            let before = if FIRST { f32x8::zero() } else { f32x8::new(*sums) };
-            *sums = (before + more(row)).to_array();
-        }
-        for (sums, row) in last_sums.iter_mut().zip(last) {
-            let more = last_more(row);
-            *sums = std::array::from_fn(|i| if FIRST { 0.0 + more[i] } else { sums[i] + more[i] });
-        }
-    }
-    kept
 }
 
 /// The sum over the blocks `index`·2^`level` … (`index` + 1)·2^`level` − 1.
@@ -231,9 +159,8 @@ mod tests {
     use super::*;
 
     fn block(index: u32) -> Node {
-        let mut sums = Sums::new(1, 1);
-        sums.add(0, 1.0, |_| 1.0 / (index + 1) as f32);
-        Node { level: 0, index, sums }
+        let sums = Sums::from_planes(&[1.0 / (index + 1) as f32], &[1.0], vec![1]);
+        Node { level: 0, index, sums: sums.expect("one pixel, one channel") }
     }
 
     fn pushed(blocks: impl IntoIterator<Item = u32>) -> Vec<Node> {

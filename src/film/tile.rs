@@ -2,12 +2,9 @@
 
 use std::{borrow::Cow, ops::Range};
 
+use super::samples::Samples;
 use super::spread::Spread;
-use super::sums::{self, BLOCK, Node, Quad, Sums};
-
-/// The greatest value of a sample: no sum of as many as can be counted overflows. Whether a sample is kept
-/// must not depend on those before it, which may be on another machine.
-pub const GREATEST: f32 = f32::MAX / 4_294_967_296.0;
+use super::sums::{self, BLOCK, Node, Sums};
 
 /// A rectangle of pixels that one thread fills at a time.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -87,53 +84,20 @@ impl TileFilm {
         self.channels
     }
 
-    /// Begins a block, if the next sample does, in memory that is left over, if there is any: what a tile before has
-    /// just used is still near.
-    pub fn begin_sample(&mut self, spare: &mut Vec<Sums>) {
-        if self.open.is_none() {
-            let fits = |sums: &Sums| (sums.pixels(), sums.channels()) == (self.pixels, self.channels);
-            self.open = spare.pop().filter(fits).map(Sums::cleared);
-        }
-    }
-
-    /// Adds to a pixel its next sample, of a weight: `value(c)` for each channel c. Each pixel gets one
-    /// before [`finish_sample`](Self::finish_sample).
-    pub fn add(&mut self, pixel: usize, weight: f32, value: impl Fn(usize) -> f32) {
-        if !(0..self.channels()).all(|c| (value(c) * weight).abs() <= GREATEST) {
-            self.keep_out(pixel as u32);
-            return;
-        }
-        self.open().add(pixel, weight, value);
-    }
-
-    #[inline]
-    fn open(&mut self) -> &mut Sums {
-        self.open.get_or_insert_with(|| Sums::new(self.pixels, self.channels))
-    }
-
-    /// The same of a row of [`sums::quads`]: the channels, then 1, then zeros.
-    #[inline]
-    pub fn add_row(&mut self, pixel: usize, weight: f32, row: &[Quad]) {
-        let added = match self.samples.end.is_multiple_of(BLOCK) {
-            true => self.open().add_row::<true>(pixel, weight, row),
-            false => self.open().add_row::<false>(pixel, weight, row),
-        };
-        if !added {
-            self.keep_out(pixel as u32);
-        }
-    }
-
-    #[cold]
-    fn keep_out(&mut self, pixel: u32) {
-        self.invalid += 1;
-        let place = (pixel, self.samples.end);
-        self.first_invalid = Some(self.first_invalid.map_or(place, |first| first.min(place)));
-    }
-
-    /// Every pixel has had its sample. What is not needed any more becomes `spare`.
-    pub fn finish_sample(&mut self, spare: &mut Vec<Sums>) {
-        let sums = self.open.take().unwrap_or_else(|| Sums::new(self.pixels, self.channels));
-        self.samples.end += 1;
+    /// Adds the next samples of every pixel, so many of one block. `add` is to give each of them to each pixel.
+    ///
+    /// A block begins in `spare` memory, if there is any: what a tile before has just used is still near. What is not
+    /// needed any more becomes spare.
+    pub fn add_samples(&mut self, count: u32, spare: &mut Vec<Sums>, add: impl FnOnce(&mut Samples<'_>)) {
+        let Range { end: first, .. } = self.samples;
+        let fits = |sums: &Sums| (sums.pixels(), sums.channels()) == (self.pixels, self.channels);
+        let begun = self.open.take().or_else(|| spare.pop().filter(fits));
+        let mut sums = begun.unwrap_or_else(|| Sums::new(self.pixels, self.channels));
+        let mut samples = Samples::new(&mut sums, first);
+        add(&mut samples);
+        self.invalid += samples.invalid;
+        self.first_invalid = self.first_invalid.into_iter().chain(samples.first_invalid).min();
+        self.samples.end += count;
         if self.samples.end.is_multiple_of(BLOCK) {
             if let Some(spread) = &mut self.spread {
                 spread.add(&sums);
@@ -217,11 +181,17 @@ mod tests {
 
     fn filled(first: u32, values: impl IntoIterator<Item = f32>) -> TileFilm {
         let mut film = TileFilm::new(1, 1, first);
-        for value in values {
-            film.add(0, 1.0, |_| value);
-            film.finish_sample(&mut Vec::new());
-        }
+        values.into_iter().for_each(|value| one(&mut film, &[(1.0, value)], &mut Vec::new()));
         film
+    }
+
+    /// One sample of each pixel: what it counts, and its value in every channel.
+    fn one(film: &mut TileFilm, sample: &[(f32, f32)], spare: &mut Vec<Sums>) {
+        film.add_samples(1, spare, |samples| {
+            for (pixel, &(weight, value)) in sample.iter().enumerate() {
+                samples.add(pixel, 0, weight, |_| value);
+            }
+        });
     }
 
     #[test]
@@ -229,34 +199,6 @@ mod tests {
         let film = filled(0, [1.0, 3e38, 3.0, -1e29, 2e28]);
         assert_eq!((film.invalid, film.first_invalid), (2, Some((0, 1))));
         assert_eq!(film.total().counts(), [3]);
-    }
-
-    #[test]
-    fn rows_are_channels_one_by_one() {
-        // One quad, pairs that are filled or not, and quads without a partner.
-        for channels in [1, 3, 4, 7, 8, 13, 16, 18, 19, 24] {
-            let (mut rows, mut ones) = (TileFilm::new(9, channels, 0), TileFilm::new(9, channels, 0));
-            for sample in 0..20 {
-                let value = |pixel: usize, channel: usize| match (sample, pixel, channel) {
-                    (3, 8, 2) => f32::NAN,
-                    (7, 2, 0) => f32::MAX,
-                    _ => noise(((sample * 9 + pixel) * channels + channel) as u32),
-                };
-                let weight = |pixel: usize| if pixel == 5 { -0.5 } else { 0.75 + pixel as f32 };
-                for pixel in 0..9 {
-                    let mut row = vec![[0.0; 4]; sums::quads(channels)];
-                    (0..channels).for_each(|c| row[c / 4][c % 4] = value(pixel, c));
-                    row[channels / 4][channels % 4] = 1.0;
-                    rows.add_row(pixel, weight(pixel), &row);
-                    ones.add(pixel, weight(pixel), |c| value(pixel, c));
-                }
-                rows.finish_sample(&mut Vec::new());
-                ones.finish_sample(&mut Vec::new());
-            }
-            let kept_out = if channels > 2 { (2, Some((2, 7))) } else { (1, Some((2, 7))) };
-            assert_eq!((ones.invalid, ones.first_invalid), kept_out);
-            assert_eq!(rows, ones);
-        }
     }
 
     fn noise(sample: u32) -> f32 {
@@ -281,11 +223,7 @@ mod tests {
     #[test]
     fn invalid_samples_are_counted_and_kept_out() {
         let mut film = TileFilm::new(2, 1, 0);
-        let mut both = |left: f32, right: f32| {
-            film.add(0, 1.0, |_| left);
-            film.add(1, 1.0, |_| right);
-            film.finish_sample(&mut Vec::new());
-        };
+        let mut both = |left: f32, right: f32| one(&mut film, &[(1.0, left), (1.0, right)], &mut Vec::new());
         both(1.0, 2.0);
         both(1.0, f32::NAN);
         both(f32::INFINITY, 4.0);
@@ -298,13 +236,12 @@ mod tests {
     fn weights_of_both_signs_keep_what_is_the_same_everywhere() {
         let mut film = TileFilm::new(1, 1, 0);
         for weight in [1.0, -1.0, 1.0, 1.0] {
-            film.add(0, weight, |_| 0.75);
-            film.finish_sample(&mut Vec::new());
+            one(&mut film, &[(weight, 0.75)], &mut Vec::new());
         }
         assert_eq!(film.total().mean(0, 0), 0.75);
         let mut none = TileFilm::new(1, 1, 0);
-        none.add(0, 1.0, |_| 3.0);
-        none.add(0, -1.0, |_| 1.0);
+        one(&mut none, &[(1.0, 3.0)], &mut Vec::new());
+        one(&mut none, &[(-1.0, 1.0)], &mut Vec::new());
         assert_eq!(none.total().mean(0, 0), 1.0);
     }
 
@@ -342,9 +279,7 @@ mod tests {
         for tile in 0..4 {
             let mut film = TileFilm::new(1, 1, 0);
             for value in values(tile) {
-                film.begin_sample(&mut spare);
-                film.add(0, 1.0, |_| value);
-                film.finish_sample(&mut spare);
+                one(&mut film, &[(1.0, value)], &mut spare);
             }
             assert_eq!(film, filled(0, values(tile)));
             kept = spare.len();
@@ -352,8 +287,7 @@ mod tests {
         assert!(kept > 0);
         // Another size has no use for it.
         let mut film = TileFilm::new(2, 3, 0);
-        film.begin_sample(&mut spare);
-        film.finish_sample(&mut spare);
+        one(&mut film, &[(1.0, 0.0); 2], &mut spare);
         assert_eq!(film.defect(), None);
     }
 

@@ -22,11 +22,30 @@ use super::exr_zip::Zip;
 /// Blocks for each thread that are held packed at a time.
 const AHEAD: usize = 8;
 
-/// Writes scan lines, on the current rayon pool. `planes` are the channels of the header in its order, row-major.
+/// A channel, row-major, as a file holds it.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Plane<'p> {
+    /// In 16 bits a number.
+    Half(&'p [f32]),
+    /// In 32.
+    Float(&'p [f32]),
+}
+
+impl Plane<'_> {
+    /// What a header calls it.
+    pub(super) fn sample_type(&self) -> SampleType {
+        match self {
+            Self::Half(_) => SampleType::F16,
+            Self::Float(_) => SampleType::F32,
+        }
+    }
+}
+
+/// Writes scan lines, on the current rayon pool. `planes` are the channels of the header in its order.
 ///
 /// # Errors
 /// What the crate says of a picture that no file can hold.
-pub(super) fn save(header: Header, planes: &[&[f32]], file: impl Write + Seek) -> Result<(), Error> {
+pub(super) fn save(header: Header, planes: &[Plane<'_>], file: impl Write + Seek) -> Result<(), Error> {
     write(file, std::iter::once(header).collect(), true, |meta, writer| {
         let headers = &meta.headers;
         let blocks: Vec<_> = enumerate_ordered_header_block_indices(headers).collect();
@@ -45,43 +64,48 @@ pub(super) fn save(header: Header, planes: &[&[f32]], file: impl Write + Seek) -
 }
 
 /// A block of scan lines, packed as its header says.
-fn pack(index: BlockIndex, headers: &[Header], planes: &[&[f32]], zip: &mut Zip) -> Result<Chunk, Error> {
+fn pack(index: BlockIndex, headers: &[Header], planes: &[Plane<'_>], zip: &mut Zip) -> Result<Chunk, Error> {
     let header = &headers[index.layer];
-    let data = bytes(index, header, planes);
     // Bytes are as the processor has them, and in the file little-endian.
     let ours = cfg!(target_endian = "little")
         && matches!(header.compression, Compression::ZIP1 | Compression::ZIP16);
     if !ours {
+        let mut data = Vec::new();
+        bytes(index, header, planes, &mut data);
         return UncompressedBlock { index, data }.compress_to_chunk(headers);
     }
     let y_coordinate = index.pixel_position.y() as i32 + header.own_attributes.layer_position.y();
-    let compressed_pixels_le = zip.pack(&data).unwrap_or(data);
+    let compressed_pixels_le = zip.pack(|data| bytes(index, header, planes, data));
     let compressed_block =
         CompressedBlock::ScanLine(CompressedScanLineBlock { y_coordinate, compressed_pixels_le });
     Ok(Chunk { layer_index: index.layer, compressed_block })
 }
 
 /// Row by row, and in each channel by channel.
-fn bytes(index: BlockIndex, header: &Header, planes: &[&[f32]]) -> Vec<u8> {
+fn bytes(index: BlockIndex, header: &Header, planes: &[Plane<'_>], bytes: &mut Vec<u8>) {
     let (first, size) = (index.pixel_position, index.pixel_size);
-    let mut bytes = vec![0; header.channels.bytes_per_pixel * size.area()];
+    bytes.resize(header.channels.bytes_per_pixel * size.area(), 0);
     let mut rest = bytes.as_mut_slice();
     for y in first.y()..first.y() + size.height() {
-        for (channel, plane) in header.channels.list.iter().zip(planes) {
-            let line = &plane[y * header.layer_size.width() + first.x()..][..size.width()];
-            let (place, behind) = rest.split_at_mut(size.width() * channel.sample_type.bytes_per_sample());
-            match channel.sample_type {
-                SampleType::F16 => {
+        let start = y * header.layer_size.width() + first.x();
+        for plane in planes {
+            let width = size.width() * plane.sample_type().bytes_per_sample();
+            let (place, behind) = rest.split_at_mut(width);
+            match *plane {
+                Plane::Half(plane) => {
                     let places = place.as_chunks_mut().0.iter_mut();
-                    places.zip(line).for_each(|(place, &x)| *place = f16::from_f32(x).to_ne_bytes());
+                    places
+                        .zip(&plane[start..][..size.width()])
+                        .for_each(|(place, &x)| *place = f16::from_f32(x).to_ne_bytes());
                 }
-                SampleType::F32 | SampleType::U32 => {
+                Plane::Float(plane) => {
                     let places = place.as_chunks_mut().0.iter_mut();
-                    places.zip(line).for_each(|(place, x)| *place = x.to_ne_bytes());
+                    places
+                        .zip(&plane[start..][..size.width()])
+                        .for_each(|(place, x)| *place = x.to_ne_bytes());
                 }
             }
             rest = behind;
         }
     }
-    bytes
 }

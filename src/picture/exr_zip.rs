@@ -9,19 +9,23 @@ use flate2::{Compress, Compression, FlushCompress, Status};
 pub(super) struct Zip {
     deflate: Compress,
     bytes: Vec<u8>,
+    reordered: Vec<u8>,
     packed: Vec<u8>,
 }
 
 impl Default for Zip {
     fn default() -> Self {
-        Self { deflate: Compress::new(Compression::fast(), true), bytes: Vec::new(), packed: Vec::new() }
+        let deflate = Compress::new(Compression::fast(), true);
+        Self { deflate, bytes: Vec::new(), reordered: Vec::new(), packed: Vec::new() }
     }
 }
 
 impl Zip {
-    /// Packs the little-endian bytes of a block. `None` if they get no shorter, and are to be kept as they are.
-    pub(super) fn pack(&mut self, bytes: &[u8]) -> Option<Vec<u8>> {
-        let Self { deflate, bytes: reordered, packed } = self;
+    /// Packs the little-endian bytes of a block, which `write` puts in place of those of the block before. If they get no
+    /// shorter they are kept as they are.
+    pub(super) fn pack(&mut self, write: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
+        let Self { deflate, bytes, reordered, packed } = self;
+        write(bytes);
         apart(bytes, reordered);
         differences(reordered);
         deflate.reset();
@@ -29,7 +33,7 @@ impl Zip {
         packed.reserve(bytes.len());
         let status = deflate.compress_vec(reordered, packed, FlushCompress::Finish);
         let shorter = matches!(status, Ok(Status::StreamEnd)) && packed.len() < bytes.len();
-        shorter.then(|| packed.clone())
+        if shorter { packed.clone() } else { bytes.clone() }
     }
 }
 
@@ -73,10 +77,16 @@ mod tests {
         let noise: Vec<u8> = (0..999u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
         let shuffled: Vec<u8> = noise.iter().enumerate().map(|(i, x)| x ^ (i * i / 7) as u8).collect();
         let mut zip = Zip::default();
-        assert_eq!(zip.pack(&shuffled), None);
-        let first = zip.pack(&[7; 1000]);
-        assert!(first.as_ref().is_some_and(|packed| packed.len() < 100));
-        assert_eq!(zip.pack(&[]), None);
-        assert_eq!(zip.pack(&[7; 1000]), first, "nothing is left of other blocks");
+        let mut pack = |bytes: &[u8]| {
+            zip.pack(|block| {
+                block.clear();
+                block.extend_from_slice(bytes);
+            })
+        };
+        assert_eq!(pack(&shuffled), shuffled);
+        let first = pack(&[7; 1000]);
+        assert!(first.len() < 100);
+        assert!(pack(&[]).is_empty());
+        assert_eq!(pack(&[7; 1000]), first, "nothing is left of other blocks");
     }
 }

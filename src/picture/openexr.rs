@@ -10,7 +10,7 @@ use std::io::Cursor;
 use exr::{
     meta::{
         BlockDescription,
-        attribute::{ChannelDescription, SampleType},
+        attribute::ChannelDescription,
         header::{Header, ImageAttributes},
     },
     prelude::{
@@ -19,7 +19,8 @@ use exr::{
     },
 };
 
-use super::{Channel, Picture, Place, exr_blocks, exr_header, limits};
+use super::exr_blocks::{self, Plane};
+use super::{Channel, Picture, Place, exr_header, limits};
 
 /// The first bytes of every OpenEXR file.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
@@ -73,15 +74,18 @@ pub(super) fn encode(picture: &Picture, style: &ExrStyle) -> Result<Vec<u8>, Str
         let name = Text::new_or_none(&channel.name)
             .filter(|_| !channel.name.is_empty())
             .ok_or_else(|| format!("`{}` is no name for a channel of an EXR file", channel.name))?;
-        let half = style.half && is_colour(&channel.name);
+        let plane = match style.half && is_colour(&channel.name) {
+            true => Plane::Half(&channel.samples),
+            false => Plane::Float(&channel.samples),
+        };
         let description = ChannelDescription {
             name,
-            sample_type: if half { SampleType::F16 } else { SampleType::F32 },
+            sample_type: plane.sample_type(),
             // A hint for compressions that lose something: what is no colour is not seen by an eye.
             quantize_linearly: !is_colour(&channel.name),
             sampling: Vec2(1, 1),
         };
-        channels.push((description, channel.samples.as_slice()));
+        channels.push((description, plane));
     }
     channels.sort_unstable_by(|(a, _), (b, _)| a.name.cmp(&b.name));
     let (channels, planes): (Vec<_>, Vec<_>) = channels.into_iter().unzip();

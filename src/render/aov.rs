@@ -37,6 +37,8 @@ pub(super) struct AovIntegrator {
     channels: Vec<AovChannel>,
     /// Does any of them ask for [`counts`]?
     counted: bool,
+    /// Does any of them ask for random numbers?
+    pub(super) draws: bool,
 }
 
 fn suffixes(kind: Aov) -> &'static [&'static str] {
@@ -96,7 +98,7 @@ impl Integrator for AovIntegrator {
                 Aov::ShNormal => put(&components(surface.frame.n)),
                 Aov::DirectionalAlbedo => {
                     let unused = (R::zero(), R::zero());
-                    let random = |asked, index| if asked { vertex.path.random(2, index) } else { unused };
+                    let random = |asked, index| if asked { vertex.first_random(index) } else { unused };
                     let (lobe, _) = random(vertex.chooses_lobes(), 1);
                     put(&components(vertex.albedo(lobe, random(vertex.is_smooth(), 0))));
                 }
@@ -113,7 +115,8 @@ impl AovIntegrator {
     /// Of these channels.
     pub(super) fn new(channels: Vec<AovChannel>) -> Self {
         let counted = channels.iter().any(|c| matches!(c.kind, Aov::Nodes | Aov::Primitives));
-        Self { channels, counted }
+        let draws = channels.iter().any(|c| c.kind == Aov::DirectionalAlbedo);
+        Self { channels, counted, draws }
     }
 
     #[inline]

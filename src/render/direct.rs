@@ -41,11 +41,11 @@ impl Integrator for Direct {
         vertex.connect_all(
             scene,
             true,
-            |k| path.random(pairs, k),
+            |k| vertex.random(pairs, k),
             |k, c| out.shadow(k, c.lanes, c.ray, c.radiance),
         );
-        let (lobe, _) = path.random(pairs, pairs - 2);
-        let (lanes, ray, next) = vertex.scatter(lobe, path.random(pairs, pairs - 1));
+        let (lobe, _) = vertex.random(pairs, pairs - 2);
+        let (lanes, ray, next) = vertex.scatter(lobe, vertex.random(pairs, pairs - 1));
         out.next(0, lanes, ray, &next);
     }
 }

@@ -1,7 +1,8 @@
 //! What the camera sees besides light, of a group of paths at a time, on its way to their pixels.
 //!
 //! It is said once a pixel, in the first round, when no path has been sorted away from its pixel yet. So it
-//! goes straight to what the pixel has, row by row of eight channels, and never through what rounds add up.
+//! goes straight to what the pixel has, row by row of eight channels, and never through what rounds add up. Its rows are its
+//! own: those of light are met by each round, and are the shorter without it.
 
 use std::ops::Range;
 
@@ -13,28 +14,56 @@ use crate::compile::Scene;
 use crate::film::sums::{self, Quad};
 use crate::simd::{Bits, Eights, LANES, MOST, Real, Vector3, f32x8, transpose};
 
-/// The layers of a scene, and room for those of one group.
+/// The layers of a scene, what they say of all pixels, and room for those of one group.
 pub(super) struct Layers<'a> {
     aovs: AovIntegrator,
     /// Channels before the first layer.
     first: usize,
-    /// Eight pixels' rows of the film, a register a number, for each eight of a group. Light is 0 in them, and what is
-    /// behind the channels stays as it is.
+    /// Eight pixels' rows of the film, a register a number, for each eight of a group. What is behind the channels stays as
+    /// it is.
     values: [BumpVec<'a, f32x8>; MOST / LANES],
-    /// In a row of the film.
+    /// What is in the film's rows behind the quads that light has, pixel after pixel.
+    rows: BumpVec<'a, f32x8>,
+    /// In a row of these.
+    eights: usize,
+    /// In a row of light.
     quads: usize,
 }
 
 impl<'a> Layers<'a> {
     /// Layers that are these channels of the picture, the last ones.
     pub(super) fn new(arena: &'a Bump, scene: &Scene, channels: Range<usize>) -> Self {
-        let quads = sums::quads(channels.end);
+        let quads = channels.start.div_ceil(4);
+        let eights = (sums::quads(channels.end) - quads).div_ceil(2);
         let values = std::array::from_fn(|_| {
-            let mut values = vec![in arena; f32x8::zero(); 4 * quads];
+            let mut values = vec![in arena; f32x8::zero(); 4 * quads + LANES * eights];
             values[channels.end] = f32x8::one();
             values
         });
-        Self { aovs: AovIntegrator::new(scene.aovs.clone()), first: channels.start, values, quads }
+        let aovs = AovIntegrator::new(scene.aovs.clone());
+        Self { aovs, first: channels.start, values, rows: BumpVec::new_in(arena), eights, quads }
+    }
+
+    /// Do any of them need random numbers?
+    #[inline]
+    pub(super) fn draws(&self) -> bool {
+        self.aovs.draws
+    }
+
+    /// Room for so many pixels. Where nothing will be said of them, it is said now, to their `light` too.
+    pub(super) fn clear(&mut self, len: usize, light: Option<&mut [Quad]>) {
+        self.rows.resize(len * self.eights, f32x8::zero());
+        if let Some(light) = light {
+            for first in (0..len).step_by(LANES) {
+                self.place(0, std::array::from_fn(|i| (first + i).min(len - 1)), light);
+            }
+        }
+    }
+
+    /// Of these pixels.
+    #[inline]
+    pub(super) fn rows(&self, pixels: Range<usize>) -> &[f32x8] {
+        &self.rows[pixels.start * self.eights..pixels.end * self.eights]
     }
 
     /// Puts what `say` says of a group, which is every channel, into the rows of its pixels.
@@ -42,27 +71,29 @@ impl<'a> Layers<'a> {
     pub(super) fn put<R: Eights>(
         &mut self,
         pixels: R::Bits,
-        rows: &mut [Quad],
+        light: &mut [Quad],
         say: impl FnOnce(&AovIntegrator, &mut Beside<'_, Lanes<'_, 'a>>),
     ) {
         say(&self.aovs, &mut Beside { out: &mut Lanes(&mut self.values), first: self.first });
-        let rows = rows.as_flattened_mut();
-        for (i, values) in self.values.iter().enumerate().take(R::LANES / LANES) {
-            let pixels: [usize; LANES] = std::array::from_fn(|lane| pixels.lane(i * LANES + lane) as usize);
-            let (eights, four) = values.as_chunks::<LANES>();
+        for i in 0..R::LANES / LANES {
             // Lanes behind the last of a group say what it says.
-            for (k, eight) in eights.iter().enumerate() {
-                for (numbers, pixel) in transpose(*eight).iter().zip(pixels) {
-                    let place = 4 * self.quads * pixel + LANES * k;
-                    rows[place..][..LANES].copy_from_slice(&numbers.to_array());
-                }
+            let pixels = std::array::from_fn(|lane| pixels.lane(i * LANES + lane) as usize);
+            self.place(i, pixels, light);
+        }
+    }
+
+    /// Puts one eight of a group into the rows of its pixels.
+    #[inline]
+    fn place(&mut self, i: usize, pixels: [usize; LANES], light: &mut [Quad]) {
+        let (shared, own) = self.values[i].split_at(4 * self.quads);
+        for (number, value) in shared.iter().enumerate().skip(self.first) {
+            for (value, pixel) in value.to_array().into_iter().zip(pixels) {
+                light[pixel * self.quads + number / 4][number % 4] = value;
             }
-            for four in four.as_chunks::<4>().0 {
-                let eight = std::array::from_fn(|k| if k < 4 { four[k] } else { f32x8::zero() });
-                for (numbers, pixel) in transpose(eight).iter().zip(pixels) {
-                    let place = 4 * self.quads * pixel + LANES * eights.len();
-                    rows[place..][..4].copy_from_slice(&numbers.half(0));
-                }
+        }
+        for (k, eight) in own.as_chunks::<LANES>().0.iter().enumerate() {
+            for (numbers, pixel) in transpose(*eight).into_iter().zip(pixels) {
+                self.rows[pixel * self.eights + k] = numbers;
             }
         }
     }

@@ -49,11 +49,11 @@ impl Integrator for PathTracer {
         let ([light, direction], (lobe, roulette)) =
             match (vertex.is_smooth(), survives_by_chance || vertex.chooses_lobes()) {
                 (true, true) => {
-                    let [light, direction, lobe] = path.randoms(PAIRS, [0, 1, 2]);
+                    let [light, direction, lobe] = vertex.randoms(PAIRS, [0, 1, 2]);
                     ([light, direction], lobe)
                 }
-                (true, false) => (path.randoms(PAIRS, [0, 1]), unused),
-                (false, true) => ([unused; 2], path.random(PAIRS, 2)),
+                (true, false) => (vertex.randoms(PAIRS, [0, 1]), unused),
+                (false, true) => ([unused; 2], vertex.random(PAIRS, 2)),
                 (false, false) => ([unused; 2], unused),
             };
         if let Some(c) = vertex.connect_one(scene, light) {

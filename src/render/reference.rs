@@ -28,7 +28,6 @@ pub(super) fn render<I: Integrator>(scene: &Scene, integrator: &I, tile: &Tile, 
     let mut traversal = Traversal::new(());
     while let Some(samples) = visit.next() {
         let mut statistics = Statistics::default();
-        let first = samples.start;
         let all: Vec<Vec<_>> = samples
             .clone()
             .map(|sample| {
@@ -39,9 +38,11 @@ pub(super) fn render<I: Integrator>(scene: &Scene, integrator: &I, tile: &Tile, 
                 (0..tile.len() as u32).map(pixel).collect()
             })
             .collect();
-        visit.finish(samples, statistics, |film, sample| {
-            for (pixel, (sums, weight)) in all[(sample - first) as usize].iter().enumerate() {
-                film.add(pixel, *weight, |c| sums[c]);
+        visit.finish(samples, statistics, |samples| {
+            for (index, pixels) in (0..).zip(&all) {
+                for (pixel, (sums, weight)) in pixels.iter().enumerate() {
+                    samples.add(pixel, index, *weight, |c| sums[c]);
+                }
             }
         });
     }

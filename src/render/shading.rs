@@ -53,7 +53,10 @@ impl<I: Integrator> Shading<'_, '_, I> {
             return;
         }
         let (tuv, primitive) = hits.packet(&at);
-        let vertex = Vertex::new(scene, path, (org, dir), tuv, primitive, MaterialId(key));
+        let mut vertex = Vertex::new(scene, path, (org, dir), tuv, primitive, MaterialId(key));
+        if layers.as_ref().is_some_and(|layers| layers.draws()) {
+            vertex.keep_randoms();
+        }
         integrator.shade(scene, &vertex, &mut group);
         if let Some(layers) = layers {
             layers.put::<R>(pixel, sums, |aovs, out| aovs.shade(scene, &vertex, out));

@@ -1,11 +1,16 @@
 //! A vertex of a path: a surface, its material there, and the three things that light does at it.
 
+use std::cell::Cell;
+
 use super::departure::{Connection, Departure, distinct};
 use super::integrator::{Line, Path};
 use crate::compile::{Asked, Scene, Surface};
 use crate::light::{Light, LightId, SurfacePoint, power_heuristic};
 use crate::material::{Appearance, Branch, MaterialId, Point};
 use crate::simd::{Bits, Mask, Real, Vector3};
+
+/// How many pairs are kept where layers need random numbers too.
+const FIRST: usize = 2;
 
 /// Points where paths have arrived, all of one material.
 #[derive(Clone, Debug)]
@@ -24,7 +29,14 @@ pub(super) struct Vertex<'s, R: Real> {
     /// cos θ_o as the surface stores its normal.
     cos_o: R,
     appearance: Appearance<'s, R>,
+    /// Is it the first of a path, and will somebody ask for [`first_random`](Self::first_random)?
+    keeps: bool,
+    /// First pairs that have been drawn.
+    kept: [Cell<Option<Pair<R>>>; FIRST],
 }
+
+/// A pair of random numbers.
+type Pair<R> = (R, R);
 
 /// A path that goes on: in which lanes, along which ray (org, dir), and what it is worth.
 pub(super) type Continuation<R> = (<R as Real>::Mask, (Vector3<R>, Vector3<R>), Path<R>);
@@ -71,7 +83,47 @@ impl<'s, R: Real> Vertex<'s, R> {
         };
         let point = Point { wo, uv: surface.uv, tangents };
         let appearance = scene.materials.appearance(material, &scene.textures, &point);
-        Self { path, from: org, dir, t, material, primitive, surface, cos_o: wo.z, appearance }
+        let (keeps, kept, cos_o) = (false, Default::default(), wo.z);
+        Self { path, from: org, dir, t, material, primitive, surface, cos_o, appearance, keeps, kept }
+    }
+
+    /// Somebody will ask for [`first_random`](Self::first_random) of this vertex, the first of its paths.
+    #[inline]
+    pub(super) fn keep_randoms(&mut self) {
+        self.keeps = true;
+    }
+
+    /// Random numbers: the `index`-th of at most `count` pairs that the integrator uses at a vertex.
+    #[inline]
+    pub(super) fn random(&self, count: u32, index: u32) -> Pair<R> {
+        // Drawn together, two pairs take hardly longer than one.
+        if self.keeps && index > 0 && self.kept[0].get().is_none() {
+            let [pair, _] = self.randoms(count, [index, 0]);
+            return pair;
+        }
+        let [pair] = self.randoms(count, [index]);
+        pair
+    }
+
+    /// Several of these pairs, in less time than one after the other.
+    #[inline]
+    pub(super) fn randoms<const N: usize>(&self, count: u32, indices: [u32; N]) -> [Pair<R>; N] {
+        let pairs = self.path.randoms(count, indices);
+        if self.keeps {
+            for (index, pair) in indices.into_iter().zip(pairs) {
+                if let Some(kept) = self.kept.get(index as usize) {
+                    kept.set(Some(pair));
+                }
+            }
+        }
+        pairs
+    }
+
+    /// One of the first two pairs of a path's first vertex, whatever its integrator uses them for.
+    #[inline]
+    pub(super) fn first_random(&self, index: u32) -> Pair<R> {
+        let kept = self.kept.get(index as usize).and_then(Cell::get);
+        kept.unwrap_or_else(|| self.path.random(FIRST as u32, index))
     }
 
     /// β f |cos θ_i| for a world direction, and the density with which it is sampled.

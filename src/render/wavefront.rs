@@ -24,7 +24,7 @@ use super::trace::{self, Route};
 use crate::bvh::Tracer;
 use crate::compile::Scene;
 use crate::film::{
-    Tile, TileFilm,
+    Samples, Tile,
     sums::{Quad, quads},
 };
 use crate::geometry::PrimitiveId;
@@ -60,7 +60,8 @@ pub(super) struct Wavefront<'a, I> {
     points: BumpVec<'a, (f32x8, f32x8)>,
     /// What the sample of each pixel counts, in the order of the first paths.
     weights: BumpVec<'a, f32>,
-    /// What a pixel's paths have brought, pixel after pixel, each in a row as the film has them.
+    /// What a pixel's paths have brought, pixel after pixel, each in a row as the film has them; of layers, no more than
+    /// shares a quad with the last of the integrator's channels.
     sums: BumpVec<'a, Quad>,
     /// In a row of `sums`.
     quads: usize,
@@ -100,7 +101,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             points: BumpVec::new_in(arena),
             weights: BumpVec::new_in(arena),
             sums: BumpVec::new_in(arena),
-            quads: quads(channels),
+            quads: if channels > lit { lit.div_ceil(4) } else { quads(channels) },
             probe: None,
         }
     }
@@ -112,9 +113,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
         loop {
             let mut statistics = Statistics::default();
             self.take(&pixels, &samples, &mut statistics);
-            visit.finish(samples.clone(), statistics, |film, sample| {
-                self.deliver(&pixels, film, (sample - samples.start) as usize, samples.len());
-            });
+            visit.finish(samples.clone(), statistics, |film| self.deliver(&pixels, film, samples.len()));
             match visit.next() {
                 Some(next) => samples = next,
                 None => return,
@@ -122,11 +121,13 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
         }
     }
 
-    /// Adds what one of so many samples has brought to the film.
-    fn deliver(&self, pixels: &Pixels, film: &mut TileFilm, sample: usize, count: usize) {
+    /// Adds what so many samples have brought to the film.
+    fn deliver(&self, pixels: &Pixels, film: &mut Samples<'_>, count: usize) {
         for (pixel, &path) in pixels.paths.iter().enumerate() {
-            let path = path as usize * count + sample;
-            film.add_row(pixel, self.weights[path], &self.sums[path * self.quads..][..self.quads]);
+            let paths = path as usize * count..(path as usize + 1) * count;
+            let sums = &self.sums[paths.start * self.quads..paths.end * self.quads];
+            let layers = self.layers.as_ref().map_or(&[][..], |layers| layers.rows(paths.clone()));
+            film.add_rows(pixel, &self.weights[paths], sums, layers);
         }
     }
 
@@ -134,7 +135,9 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     pub(super) fn sample(&mut self, (x, y): (u32, u32), sample: u32) -> Vec<f32> {
         let pixels = Pixels::new(self.scene, &Tile { x, y, width: 1, height: 1 });
         self.take(&pixels, &(sample..sample + 1), &mut Statistics::default());
-        self.sums.iter().flatten().copied().take(self.channels).collect()
+        let layers = self.layers.as_ref().map_or(&[][..], |layers| layers.rows(0..1));
+        let layers = layers.iter().flat_map(|eight| eight.to_array());
+        self.sums.iter().flatten().copied().chain(layers).take(self.channels).collect()
     }
 
     /// What one sample of a tile does.
@@ -160,15 +163,14 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
 
     /// Nothing yet, for so many paths.
     fn clear(&mut self, len: usize) {
-        // Layers write whole rows, in the first round.
-        let blank = self.layers.is_none() || self.integrator.begins();
-        if blank {
-            self.sums.clear();
-        }
+        self.sums.clear();
         self.sums.resize(len * self.quads, [0.0; 4]);
-        if blank {
-            let one = self.channels;
-            self.sums.chunks_exact_mut(self.quads).for_each(|row| row[one / 4][one % 4] = 1.0);
+        match &mut self.layers {
+            Some(layers) => layers.clear(len, self.integrator.begins().then_some(&mut self.sums[..])),
+            None => {
+                let one = self.channels;
+                self.sums.chunks_exact_mut(self.quads).for_each(|row| row[one / 4][one % 4] = 1.0);
+            }
         }
         self.weights.clear();
     }

@@ -35,7 +35,7 @@ impl Integrator for Whitted {
         vertex.connect_all(
             scene,
             false,
-            |k| path.random(pairs, k),
+            |k| vertex.random(pairs, k),
             |k, c| out.shadow(k, c.lanes, c.ray, c.radiance),
         );
         if !vertex.is_split() {

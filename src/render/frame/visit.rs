@@ -9,7 +9,7 @@ use std::{
 
 use super::{Cell, Frame, Watch, lock};
 use crate::{
-    film::{Tile, TileFilm, sums::Sums},
+    film::{Samples, Tile, sums::Sums},
     render::{
         Progress,
         statistics::{Stage, Statistics},
@@ -55,22 +55,19 @@ impl Visit<'_> {
         (!done && !(self.watch.stop)()).then(|| first..first + together(first, self.until))
     }
 
-    /// Adds samples of every pixel, one after the other, and what they took.
+    /// Adds samples of every pixel, as [`TileFilm::add_samples`](crate::film::TileFilm::add_samples) asks for them, and what they took.
     pub(in crate::render) fn finish(
         &self,
         samples: Range<u32>,
         mut statistics: Statistics,
-        add: impl Fn(&mut TileFilm, u32),
+        add: impl FnOnce(&mut Samples<'_>),
     ) {
         let start = Instant::now();
-        let pixels = self.cell.tile.len() as u64 * samples.len() as u64;
+        let count = samples.len() as u32;
+        let pixels = self.cell.tile.len() as u64 * u64::from(count);
         let mut state = lock(&self.cell.state);
         let spare = &mut *self.spare.borrow_mut();
-        for sample in samples {
-            state.film.begin_sample(spare);
-            add(&mut state.film, sample);
-            state.film.finish_sample(spare);
-        }
+        state.film.add_samples(count, spare, add);
         // One is what the next block needs; more would grow with the number of samples.
         spare.truncate(1);
         statistics.spend(Stage::Add, start);

@@ -305,11 +305,12 @@ mod tests {
         let mut film = TileFilm::new(6, 3, 0);
         film.spread = Some(Spread::new(6));
         for sample in 0..21 {
-            for pixel in 0..6 {
-                let invalid = sample == 5 && pixel == 4;
-                film.add(pixel, 1.0, |c| if invalid { f32::NAN } else { (sample + c) as f32 });
-            }
-            film.finish_sample(&mut Vec::new());
+            film.add_samples(1, &mut Vec::new(), |samples| {
+                for pixel in 0..6 {
+                    let invalid = sample == 5 && pixel == 4;
+                    samples.add(pixel, 0, 1.0, |c| if invalid { f32::NAN } else { (sample + c) as f32 });
+                }
+            });
         }
         let statistics = Statistics {
             samples: 126,
