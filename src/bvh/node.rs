@@ -111,7 +111,7 @@ impl Child {
 impl Node {
     /// Where an absent child is: nowhere for those who look for the near plane of an axis by the sign of the ray, and,
     /// because of NaN along the last axis, for those who take the lesser of two planes.
-    const NOWHERE: [[f32; 2]; 3] =
+    pub(super) const NOWHERE: [[f32; 2]; 3] =
         [[f32::INFINITY, f32::NEG_INFINITY], [f32::INFINITY, f32::NEG_INFINITY], [f32::NAN, f32::NAN]];
 
     /// No children.

@@ -66,7 +66,7 @@ impl Group {
             shapes::compile(shapes, named, &mut vec![])?;
         let mut bvh = Bvh::build_with(references, quality);
         let slots = bvh.take_slots();
-        let primitives = Primitives::new(slots, Instances::default(), |id| surfaces.primitive(id));
+        let primitives = Primitives::new(slots, Instances::default(), &surfaces);
         Ok(Self { surfaces, primitives, bvh, degenerate })
     }
 }

@@ -2,6 +2,7 @@
 
 mod attributes;
 mod canonical;
+mod corners;
 mod filter;
 mod instances;
 mod lights;
@@ -43,7 +44,6 @@ use crate::scene::{
 use crate::texture::TextureTable;
 use attributes::AttributedMeshes;
 use instances::Instances;
-use primitives::Primitive;
 use shapes::{Metered, Named};
 use surfaces::Surfaces;
 
@@ -215,10 +215,7 @@ fn compile_shapes(
 
     let start = Instant::now();
     let mut bvh = Bvh::build_with(references, quality);
-    let primitives = Primitives::new(bvh.take_slots(), instances, |id| match id < first {
-        true => surfaces.primitive(id),
-        false => Primitive::Instance,
-    });
+    let primitives = Primitives::new(bvh.take_slots(), instances, &surfaces);
     let bvh_time = bvh_time + start.elapsed();
 
     let upper = size_of_val(bvh.nodes()) as u64;

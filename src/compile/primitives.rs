@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 pub(super) use self::accept::{accept, accept_single};
 use self::triangle_block::{TriangleBlock, row, set};
-use super::instances::Instances;
+use super::{instances::Instances, surfaces::Surfaces};
 use crate::bvh::{BLOCK, HitLanes, Hitx8, Hitx16, Leaves};
 use crate::geometry::{
     AspectColumns, Canonical, Hit, Pencils, PrimitiveId, Ray, RayLanes, Rayx8, Rayx16, Sphere, SphereLanes,
@@ -82,27 +82,27 @@ impl Primitive {
 }
 
 impl Primitives {
-    /// Lays the primitives out. `slots` holds indices into `primitives`, `u32::MAX` for padding, in blocks
-    /// of one class; the index is the primitive's id.
-    pub(super) fn new(
-        mut slots: Vec<u32>,
-        mut instances: Instances,
-        primitives: impl Fn(u32) -> Primitive + Sync,
-    ) -> Self {
+    /// Lays the primitives out. `slots` holds their ids, `u32::MAX` for padding, in blocks of one class; what is beyond
+    /// the surfaces are instances.
+    pub(super) fn new(mut slots: Vec<u32>, mut instances: Instances, surfaces: &Surfaces) -> Self {
+        let first_instance = surfaces.shape_of.len() as u32;
+        let primitives = |id| match id < first_instance {
+            true => surfaces.primitive(id),
+            false => Primitive::Instance,
+        };
         let class = |block: &[u32; BLOCK]| primitives(block[0]).class();
         let blocks = slots.as_chunks().0;
         let (triangles, rest) = blocks.split_at(blocks.partition_point(|block| class(block) == TRIANGLE));
         let (spheres, rest) = rest.split_at(rest.partition_point(|block| class(block) == SPHERE));
         let (canonicals, placed) = rest.split_at(rest.partition_point(|block| class(block) == CANONICAL));
         instances.fill(placed.as_flattened());
-        let spheres = spheres.par_iter().map(|ids| SphereBlock::new(ids, &primitives)).collect();
+        let spheres = spheres.par_iter().map(|ids| SphereBlock::new(ids, primitives)).collect();
         let canonical = |&id: &u32| match (id != u32::MAX).then(|| primitives(id)) {
             Some(Primitive::Canonical(surface)) => Some((surface, id)),
             _ => None,
         };
         let canonicals = canonicals.as_flattened().iter().map(canonical).collect();
-        let triangles: Vec<_> =
-            triangles.par_iter().map(|ids| TriangleBlock::new(ids, &primitives)).collect();
+        let triangles = TriangleBlock::all(triangles, surfaces);
         slots.truncate(triangles.len() * BLOCK);
         slots.shrink_to_fit();
         Self { triangles, triangle_ids: slots, spheres, canonicals, instances }

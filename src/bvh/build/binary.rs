@@ -84,10 +84,9 @@ impl Run {
         Self { root: 0, places: nodes.len() as u32 }
     }
 
-    /// The runs of an inner node's children.
+    /// The runs of an inner node's children, of which the right one stands so far on.
     #[inline]
-    pub(super) fn children(self, nodes: &[Packed]) -> [Self; 2] {
-        let right = Binary::unpack(&nodes[self.root as usize]).word;
+    pub(super) fn children(self, right: u32) -> [Self; 2] {
         [
             Self { root: self.root + 1, places: right - 1 },
             Self { root: self.root + right, places: self.places - right },

@@ -2,6 +2,7 @@
 
 use glam::{Vec3A, Vec3Swizzles, Vec4};
 
+use crate::bvh::Node;
 use crate::geometry::Aabb;
 use crate::simd::{Mask, Real, f32x8, transpose, u32x8};
 
@@ -11,6 +12,12 @@ pub(super) struct Bounds(pub(super) f32x8);
 
 impl Bounds {
     pub(super) const EMPTY: Self = Self(f32x8::new([f32::NEG_INFINITY; 8]));
+
+    /// The box of an absent child.
+    pub(super) const NOWHERE: Self = {
+        let [[x0, x1], [y0, y1], [z0, z1]] = Node::NOWHERE;
+        Self(f32x8::new([-x0, -y0, -z0, 0.0, x1, y1, z1, 0.0]))
+    };
 
     /// What a row of a reference or a node has in its lanes, but for what is in those to spare: as floats, numbers may
     /// be so small that arithmetic gets slow. By lanes: taken apart, rows would be read and moved in parts.
@@ -76,6 +83,13 @@ impl Bounds {
         dx * dy + dy * dz + dz * dx
     }
 
+    /// Eight boxes as a [`Node`] has them.
+    #[inline]
+    pub(super) fn columns(boxes: [Self; 8]) -> [[[f32; 8]; 2]; 3] {
+        let [x0, y0, z0, _, x1, y1, z1, _] = transpose(boxes.map(|bounds| bounds.0));
+        [[-x0, x1], [-y0, y1], [-z0, z1]].map(|sides| sides.map(f32x8::to_array))
+    }
+
     /// Twice the middle: order and ratios are the same, and it costs one instruction.
     #[inline]
     pub(super) fn centre(self) -> Vec3A {
@@ -97,6 +111,7 @@ impl From<Aabb> for Bounds {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bvh::Child;
     use glam::vec3;
 
     #[test]
@@ -111,6 +126,20 @@ mod tests {
         let one_by_one = boxes.map(|bounds| bounds.half_area().to_bits());
         assert_eq!(Bounds::half_areas(&boxes).to_array().map(f32::to_bits), one_by_one);
         assert_eq!(one_by_one[0], 0);
+    }
+
+    #[test]
+    fn columns_are_what_a_node_has_that_is_filled_box_by_box() {
+        let mut node = Node::EMPTY;
+        let mut boxes = [Bounds::NOWHERE; 8];
+        for (place, bounds) in boxes.iter_mut().enumerate().take(5) {
+            let min = vec3(0.0, -0.0, 0.5) * place as f32;
+            let aabb = Aabb { min, max: min + vec3(0.0, 1.0, 2.0) };
+            *bounds = aabb.into();
+            node.set(place, aabb, Child::leaf(0, 1));
+        }
+        let bits = |bounds: [[[f32; 8]; 2]; 3]| bounds.map(|sides| sides.map(|row| row.map(f32::to_bits)));
+        assert_eq!(bits(Bounds::columns(boxes)), bits(node.bounds));
     }
 
     #[test]

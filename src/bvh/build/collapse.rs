@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use super::{
     binary::{Binary, Packed, Run},
+    bounds::Bounds,
     reference::Names,
     weigh::Choices,
 };
@@ -55,8 +56,8 @@ struct Segment {
 trait Target {
     /// A node; returns its index.
     fn node(&mut self) -> u32;
-    /// The child of a node, and the binary node that it is.
-    fn child(&mut self, node: u32, place: usize, root: u32, child: Child);
+    /// What a node holds: binary nodes, and what has become of each.
+    fn fill(&mut self, node: u32, forest: &Forest, children: [Child; 8]);
     /// The primitives of a leaf; returns the first slot.
     fn leaf(&mut self, class: usize, indices: &[u32]) -> u32;
     /// The first node of another segment.
@@ -84,7 +85,7 @@ impl Target for Extent {
         self.nodes - 1
     }
 
-    fn child(&mut self, _: u32, _: usize, _: u32, _: Child) {}
+    fn fill(&mut self, _: u32, _: &Forest, _: [Child; 8]) {}
 
     /// No leaf crosses from one block into the next.
     fn leaf(&mut self, class: usize, indices: &[u32]) -> u32 {
@@ -125,9 +126,13 @@ impl Target for Filling<'_> {
         self.part.first + self.filled.node()
     }
 
-    fn child(&mut self, node: u32, place: usize, root: u32, child: Child) {
-        let node = &mut self.part.nodes[(node - self.part.first) as usize];
-        node.set(place, self.tree.node(root).bounds.aabb(), child);
+    fn fill(&mut self, node: u32, forest: &Forest, children: [Child; 8]) {
+        let mut boxes = [Bounds::NOWHERE; 8];
+        for (place, run) in forest.places() {
+            boxes[place] = self.tree.node(run.root).bounds;
+        }
+        self.part.nodes[(node - self.part.first) as usize] =
+            Node { bounds: Bounds::columns(boxes), children };
     }
 
     fn leaf(&mut self, class: usize, indices: &[u32]) -> u32 {
@@ -158,7 +163,7 @@ pub(super) fn collapse(tree: Weighed<'_>) -> (Vec<Node>, Vec<u32>) {
     let slot_count =
         (0..classes).flat_map(|class| extents.iter().map(move |extent| extent.slots(class))).sum();
     let mut nodes: Vec<Node> = rayon::iter::repeat_n(Node::EMPTY, node_count).collect();
-    let mut slots = vec![u32::MAX; slot_count];
+    let mut slots: Vec<u32> = rayon::iter::repeat_n(u32::MAX, slot_count).collect();
     let parts = divide(&extents, classes, &mut nodes, &mut slots);
     let firsts: Vec<u32> = parts.iter().map(|part| part.first).collect();
     segments.par_iter().zip(parts).with_max_len(1).for_each(|(segment, part)| {
@@ -224,7 +229,11 @@ impl Weighed<'_> {
         let Segment { run, top } = *segment;
         if self.is_leaf(run) {
             let (lone, leaf) = (target.node(), self.leaf(run, target));
-            target.child(lone, 0, run.root, leaf);
+            let mut forest = Forest::default();
+            forest.push(run);
+            let mut children = [Child::ABSENT; 8];
+            children[0] = leaf;
+            target.fill(lone, &forest, children);
         } else if let Some(numbers) = top {
             self.expand(run, target, &|_, place, target| target.first_of(numbers[place]));
         } else {
@@ -240,14 +249,16 @@ impl Weighed<'_> {
     /// Lays out a node; `inner` has the index of a child that is no leaf, by its place.
     fn expand<T: Target>(&self, run: Run, target: &mut T, inner: &impl Fn(Run, usize, &mut T) -> u32) -> u32 {
         let index = target.node();
-        for (place, child) in self.forest(run).places() {
-            let what = if self.is_leaf(child) {
+        let forest = self.forest(run);
+        let mut children = [Child::ABSENT; 8];
+        for (place, child) in forest.places() {
+            children[place] = if self.is_leaf(child) {
                 self.leaf(child, target)
             } else {
                 Child::inner(inner(child, place, target))
             };
-            target.child(index, place, child.root, what);
         }
+        target.fill(index, &forest, children);
         index
     }
 
@@ -255,7 +266,7 @@ impl Weighed<'_> {
     fn leaf(&self, run: Run, target: &mut impl Target) -> Child {
         let first = self.node(run.root).first as usize;
         let count = self.choices.of(run.root).leaf_count();
-        let class = usize::from(self.names.classes[first]);
+        let class = usize::from(self.names.class(first));
         let begin = target.leaf(class, &self.names.indices[first..][..count]);
         Child::leaf(begin, count as u32)
     }
@@ -265,7 +276,7 @@ impl Weighed<'_> {
         let mut forest = Forest::default();
         // The node itself is being filled, so it is not its own child.
         let from_left = self.choices.of(run.root).left_trees(8);
-        let [left, right] = run.children(self.nodes);
+        let [left, right] = self.choices.children(run, self.nodes);
         self.trees(left, from_left, &mut forest);
         self.trees(right, 8 - from_left, &mut forest);
         forest
@@ -278,7 +289,7 @@ impl Weighed<'_> {
             forest.push(run);
             return;
         }
-        let [left, right] = run.children(self.nodes);
+        let [left, right] = self.choices.children(run, self.nodes);
         self.trees(left, from_left, forest);
         self.trees(right, i - from_left, forest);
     }

@@ -67,7 +67,9 @@ impl Reference {
 #[derive(Default)]
 pub(super) struct Names {
     pub(super) indices: Vec<u32>,
-    pub(super) classes: Vec<u8>,
+    classes: Vec<u8>,
+    /// Are there several classes at all?
+    mixed: bool,
 }
 
 impl Names {
@@ -76,6 +78,22 @@ impl Names {
         let mut names = Self::default();
         let both = references.par_iter().map(|reference| (reference.index(), reference.class()));
         both.unzip_into_vecs(&mut names.indices, &mut names.classes);
+        let first = names.classes[0];
+        // Not stopping at the first that differs: many at a time.
+        names.mixed = names.classes.iter().fold(0, |bits, class| bits | (class ^ first)) != 0;
         names
+    }
+
+    /// The class of a place.
+    #[inline]
+    pub(super) fn class(&self, place: usize) -> u8 {
+        self.classes[if self.mixed { place } else { 0 }]
+    }
+
+    /// Are so many from a place on of one class?
+    #[inline]
+    pub(super) fn are_of_one_class(&self, first: usize, count: usize) -> bool {
+        let class = self.class(first);
+        !self.mixed || self.classes[first..][..count].iter().all(|other| *other == class)
     }
 }

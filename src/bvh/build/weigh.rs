@@ -13,7 +13,7 @@
 
 use super::{
     MAX_LEAF,
-    binary::{Binary, Packed},
+    binary::{Binary, Packed, Run},
     reference::Names,
 };
 use crate::simd::{Bits, Real, f32x8, u32x8};
@@ -28,10 +28,15 @@ const PRIMITIVE_COST: f32 = 0.3;
 /// Subtrees of fewer places are weighed by one thread.
 const PARALLEL: usize = 8192;
 
-/// How forests of i = 1 to 8 trees are made of a node's children, a nibble each: k, or 0 for one tree.
-/// The first is the count of references where that tree is a leaf.
+/// How forests of i = 2 to 8 trees are made of a node's children: k, or 0 for one tree. The first four bits are the count
+/// of references where that tree is a leaf, the last eleven the distance to the right child, or 0 where it is more.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Choice(u32);
+
+/// The bits of k for forests of up to i trees: how far from the first, and which of those from there on.
+const FIELDS: [(u32, u32); 9] = [(0, 0), (0, 0), (4, 1), (5, 3), (7, 3), (9, 7), (12, 7), (15, 7), (18, 7)];
+/// The first bit of the distance to the right child.
+const RIGHT: u32 = 21;
 
 impl Choice {
     /// References of the node as a leaf; 0 if it is none.
@@ -43,7 +48,8 @@ impl Choice {
     /// The trees of a forest of `i` that are made of the left child; 0 for the node as one tree.
     #[inline]
     pub(super) fn left_trees(self, i: usize) -> usize {
-        if i == 1 { 0 } else { (self.0 >> (4 * (i - 1)) & 15) as usize }
+        let (first, bits) = FIELDS[i % 9];
+        (self.0 >> first & bits) as usize
     }
 }
 
@@ -61,6 +67,15 @@ impl Choices {
     #[inline]
     pub(super) fn of(&self, node: u32) -> Choice {
         Choice(self.0[node as usize])
+    }
+
+    /// The runs of an inner node's children. Nodes are hardly ever looked at: choices are closer together.
+    #[inline]
+    pub(super) fn children(&self, run: Run, nodes: &[Packed]) -> [Run; 2] {
+        match self.of(run.root).0 >> RIGHT {
+            0 => run.children(Binary::unpack(&nodes[run.root as usize]).right() as u32),
+            near => run.children(near),
+        }
     }
 }
 
@@ -92,31 +107,34 @@ fn weigh(nodes: &[Packed], choices: &mut [u32], names: &Names) -> (Costs, usize)
     let mut single = area * NODE_COST + distributed.lane(7);
     let mut leaf_count = 0;
     if count <= MAX_LEAF {
-        let classes = &names.classes[node.first as usize..][..count];
         let leaf = area * leaf_cost(count);
-        if leaf <= single && classes.iter().all(|class| *class == classes[0]) {
+        if leaf <= single && names.are_of_one_class(node.first as usize, count) {
             (single, leaf_count) = (leaf, count);
         }
     }
     let single = Costs::splat(single);
     let lone = single.le(distributed);
-    let nibbles = u32x8::select(lone, u32x8::splat(0), from_left).to_array();
+    let ks = u32x8::select(lone, u32x8::splat(0), from_left).to_array();
     // The eighth stays: it is how the node itself is filled, and a node has all its places.
-    let eighth = from_left.lane(7) << 28;
-    *choice = (1..7).fold(leaf_count as u32 | eighth, |bits, i| bits | nibbles[i] << (4 * i));
+    let eighth = from_left.lane(7) << FIELDS[8].0;
+    let right = node.right() as u32;
+    let near = if right >> (32 - RIGHT) == 0 { right << RIGHT } else { 0 };
+    *choice = (2..8).fold(leaf_count as u32 | eighth | near, |bits, i| bits | ks[i - 1] << FIELDS[i].0);
     (Costs::min(single, distributed), count)
 }
 
 /// D(·, 1..=8), infinite for 1, and the k of each.
 #[inline]
 fn distribute(left: Costs, right: Costs) -> (Costs, u32x8) {
+    // Where more trees don't make the left any cheaper, it is one: C does not grow with i.
+    let trees = if left.equal(Costs::splat(left.lane(0))).all() { 1 } else { 7 };
     // Right costs, i − k lanes further on.
     let mut shifted = [f32::INFINITY; 16];
     shifted[8..].copy_from_slice(&right.to_array());
     let left = left.to_array();
     let mut least = Costs::splat(f32::INFINITY);
     let mut from_left = u32x8::splat(0);
-    for k in 1..8 {
+    for k in 1..=trees {
         let right = Costs::from_fn(|lane| shifted[8 - k + lane]);
         let cost = Costs::splat(left[k - 1]) + right;
         let less = cost.lt(least);

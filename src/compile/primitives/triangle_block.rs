@@ -1,9 +1,15 @@
 //! Triangles as the leaves hold them: eight in columns.
 
-use super::{Primitive, accept};
-use crate::bvh::{HitLanes, Hitx16};
+use rayon::prelude::*;
+
+use super::accept;
+use crate::bvh::{BLOCK, HitLanes, Hitx16};
+use crate::compile::{corners::Corners, surfaces::Surfaces};
 use crate::geometry::{Aspect, AspectColumns, RayLanes, Rayx16, Triangle, TriangleLanes};
 use crate::simd::{Bits, Mask, Mask8, Mask16, ONE_REGISTER, Real, Vector3, f32x8, f32x16, u32x8, vector3};
+
+/// Memory is asked for the vertices of triangles so many blocks on, and for their numbers twice as far.
+const AHEAD: usize = 4;
 
 /// Eight triangles: 320 bytes, all that a test reads. Padding is nowhere: NaN is never hit.
 #[derive(Clone, Copy, Debug)]
@@ -21,14 +27,28 @@ impl TriangleBlock {
         Self { v0: nowhere, v1: nowhere, v2: nowhere, edges: [f32::NAN; 8] }
     };
 
-    pub(super) fn new(ids: &[u32], primitives: impl Fn(u32) -> Primitive) -> Self {
+    /// Fills blocks with triangles, in slots that hold ids. Memory is asked for those of blocks to come.
+    pub(super) fn all(blocks: &[[u32; BLOCK]], surfaces: &Surfaces) -> Vec<Self> {
+        let fill = |corners: &mut Corners, (i, ids): (usize, &[u32; BLOCK])| {
+            if let Some(later) = blocks.get(i + 2 * AHEAD) {
+                corners.ask_for_indices(later);
+            }
+            if let Some(later) = blocks.get(i + AHEAD) {
+                corners.ask_for_vertices(later);
+            }
+            Self::new(ids, corners)
+        };
+        blocks.par_iter().enumerate().map_init(|| Corners::new(surfaces), fill).collect()
+    }
+
+    fn new(ids: &[u32; BLOCK], corners: &mut Corners) -> Self {
         let mut block = Self::EMPTY;
-        for (lane, &id) in ids.iter().enumerate().filter(|&(_, &id)| id != u32::MAX) {
-            if let Primitive::Triangle(triangle) = primitives(id) {
-                set(&mut block.v0, lane, triangle.v0);
-                set(&mut block.v1, lane, triangle.v1);
-                set(&mut block.v2, lane, triangle.v2);
-                block.edges[lane] = triangle.edges();
+        for (lane, &id) in ids.iter().enumerate() {
+            if let Some([v0, v1, v2]) = corners.of(id) {
+                set(&mut block.v0, lane, v0);
+                set(&mut block.v1, lane, v1);
+                set(&mut block.v2, lane, v2);
+                block.edges[lane] = Triangle::new(v0, v1, v2).edges();
             }
         }
         block
