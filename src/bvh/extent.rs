@@ -60,14 +60,20 @@ impl Extent {
             }
         }
         // With one sign, least and greatest are each other's reciprocals.
-        let [low, high] = [greatest, least].map(|r| (f32x8::one() / f32x8::new(r)).to_array());
-        let (mut diagonal, mut length) = (0.0, 0.0);
-        for (low, high) in low.into_iter().zip(high).take(3) {
-            diagonal += (high - low) * (high - low);
-            length += (high + low) * (high + low) * 0.25;
-        }
-        Some((diagonal / length).sqrt())
+        let [[lx, ly, lz, ..], [hx, hy, hz, ..]] =
+            [greatest, least].map(|r| (f32x8::one() / f32x8::new(r)).to_array());
+        Some(diagonal([(lx, hx), (ly, hy), (lz, hz)]))
     }
+}
+
+/// The diagonal of a box of directions, from its sides along the axes, in lengths of its middle.
+pub(super) fn diagonal(sides: [(f32, f32); 3]) -> f32 {
+    let (mut diagonal, mut length) = (0.0, 0.0);
+    for (low, high) in sides {
+        diagonal += (high - low) * (high - low);
+        length += (high + low) * (high + low) * 0.25;
+    }
+    (diagonal / length).sqrt()
 }
 
 /// Where all rays start, if that is one point.

@@ -5,7 +5,7 @@ use super::{
     bundle::{BUNDLE, Grouping},
     cost::Cost,
     entry::Segments,
-    extent::Extent,
+    extent::{Extent, diagonal},
     habit::{Coherence, Habit},
     occluder::Occluder,
 };
@@ -162,13 +162,8 @@ impl Run {
         let rows = transpose([low[0], low[1], low[2], low[2], high[0], high[1], high[2], high[2]]);
         let least = rows.into_iter().reduce(Real::min).unwrap_or_default();
         let [lx, ly, lz, _, hx, hy, hz, _] = least.to_array();
-        let (mut diagonal, mut length, mut one_octant) = (0.0, 0.0, true);
-        for (low, high) in [(lx, -hx), (ly, -hy), (lz, -hz)] {
-            one_octant &= low >= 0.0 || high <= 0.0;
-            diagonal += (high - low) * (high - low);
-            length += (high + low) * (high + low) * 0.25;
-        }
-        ((diagonal / length).sqrt(), one_octant)
+        let sides = [(lx, -hx), (ly, -hy), (lz, -hz)];
+        (diagonal(sides), sides.iter().all(|&(low, high)| low >= 0.0 || high <= 0.0))
     }
 }
 

@@ -12,7 +12,7 @@
 use glam::Vec3;
 
 use super::{Aspect, triangle::roundings};
-use crate::simd::{LANES, Mask, Mask8, Real, Vec3x8, Vec3x16, f32x8, f32x16};
+use crate::simd::{LANES, Mask8, Real, Vec3x8, f32x8};
 
 /// Roundings, in ulps of |dir|·(|s|·(|e₁| + |e₂|) + |e₁|·|e₂|): the kernel's products take part with at
 /// most 10 each, these with as many, and the middle and the radius of the directions with 4.
@@ -28,7 +28,6 @@ pub struct Pencils {
     radius: Vec3x8,
     /// Greatest |x| + |y| + |z| of a direction.
     length: f32x8,
-    longest: f32,
     /// What all of them have to do with the margins of triangles.
     rounding: Vec3,
 }
@@ -44,7 +43,6 @@ impl Pencils {
             middle: (low + high).scale(half),
             radius: (high - low).scale(half),
             length: greatest.element_sum(),
-            longest: greatest.element_sum().reduce_max(),
             rounding: roundings(greatest).each(f32x8::reduce_max).into(),
         }
     }
@@ -75,27 +73,6 @@ impl Pencils {
         let negative = u.1.min(v.1).min(w.1).lt(-margin);
         let positive = margin.lt(u.0.max(v.0).max(w.0));
         !(negative & positive)
-    }
-}
-
-impl EdgePlanes {
-    /// For each triangle the margin of directions that are no longer than these.
-    #[inline]
-    pub fn margins(&self, pencils: &Pencils) -> [f32; LANES] {
-        let length = f32x8::splat(pencils.longest);
-        f32x8::new(self.margin).fused(length, f32x8::splat(LEAST)).to_array()
-    }
-
-    /// May any of sixteen rays hit the triangle in a lane?
-    #[inline(always)]
-    pub fn meet_any(&self, dir: &Vec3x16, lane: usize, margin: f32) -> bool {
-        let along = |plane: &[[f32; LANES]; 3]| {
-            let [x, y, z] = [0, 1, 2].map(|axis| f32x16::splat(plane[axis][lane]));
-            dir.z.fused(z, dir.y.fused(y, dir.x * x))
-        };
-        let [u, v, w] = [along(&self.u), along(&self.v), along(&self.w)];
-        let inside = u.min(v).min(w).max(-u.max(v).max(w));
-        f32x16::splat(-margin).le(inside).any()
     }
 }
 
