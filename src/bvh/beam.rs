@@ -10,27 +10,37 @@ use super::{
     packet::Packet,
 };
 use crate::geometry::{Pencils, RayLanes, aabb};
-use crate::simd::{Mask8, Real, f32x8, vector3};
+use crate::simd::{LANES, Mask, Mask8, Mask16, Real, f32x8, f32x16, vector3};
 
 /// Beams in lanes, all into one octant.
-pub(super) struct Beam {
+pub(super) struct Beam<R> {
     /// Where the rays point along each axis.
     negative: [bool; 3],
     /// The origin that makes a near plane nearest.
-    near_org: [f32x8; 3],
+    near_org: [R; 3],
     /// The origin that makes a far plane farthest.
-    far_org: [f32x8; 3],
+    far_org: [R; 3],
     /// The reciprocal direction of least magnitude.
-    rdir_least: [f32x8; 3],
+    rdir_least: [R; 3],
     /// That of greatest magnitude: infinite if a ray lies in the planes of the axis.
-    rdir_greatest: [f32x8; 3],
-    t_near: f32x8,
+    rdir_greatest: [R; 3],
+    t_near: R,
+}
+
+/// The planes of a node's children, measured from an origin.
+pub(super) struct Distances {
+    /// Of the planes that are met first along each axis; lanes are children.
+    near: [[f32; LANES]; 3],
+    /// Of those that are met last.
+    far: [[f32; LANES]; 3],
+    /// The children all of whose planes are ahead of the origin.
+    pub(super) ahead: Mask8,
 }
 
 /// Least and greatest of a quantity, in lanes.
-type Range = (f32x8, f32x8);
+type Range<R> = (R, R);
 
-impl Beam {
+impl Beam<f32x8> {
     /// One beam around the active rays of a packet, in all lanes; `None` if they point into several
     /// octants.
     pub(super) fn of_packet<R: Packet>(ray: &RayLanes<R>, active: R::Mask) -> Option<Self> {
@@ -40,95 +50,6 @@ impl Beam {
         let t_near = f32x8::splat(low(ray.t_near));
         let (org, rdir) = ([ray.org.x, ray.org.y, ray.org.z], [ray.rdir.x, ray.rdir.y, ray.rdir.z]);
         Self::new(org.map(range), rdir.map(range), t_near)
-    }
-
-    /// The beams of two runs, a bundle each; `None` if they point into several octants.
-    pub(super) fn of_runs(one: &Extent, other: &Extent) -> Option<Self> {
-        let lanes = |of: fn(&Extent) -> &[extent::Range; 3], axis: usize| {
-            let ((low, high), (other_low, other_high)) = (of(one)[axis], of(other)[axis]);
-            (f32x8::of_halves(low, other_low), f32x8::of_halves(high, other_high))
-        };
-        let org = [0, 1, 2].map(|axis| lanes(|extent| &extent.org, axis));
-        let rdir = [0, 1, 2].map(|axis| lanes(|extent| &extent.rdir, axis));
-        Self::new(org, rdir, f32x8::splat(Real::min(one.t_near, other.t_near)))
-    }
-
-    /// The directions of the beams, if all of them have one origin.
-    pub(super) fn pencils(&self) -> Option<Pencils> {
-        let origin = |axis: usize| {
-            let first = f32x8::splat(self.near_org[axis].lane(0));
-            let same = first.equal(self.near_org[axis]) & first.equal(self.far_org[axis]);
-            same.all().then(|| first.lane(0))
-        };
-        let org = glam::vec3(origin(0)?, origin(1)?, origin(2)?);
-        let one = f32x8::splat(1.0);
-        // Least and greatest in magnitude are each other's reciprocals.
-        let least =
-            vector3(self.rdir_greatest[0], self.rdir_greatest[1], self.rdir_greatest[2]).map(|r| one / r);
-        let greatest = vector3(self.rdir_least[0], self.rdir_least[1], self.rdir_least[2]).map(|r| one / r);
-        Some(Pencils::new(org, least.min(greatest), least.max(greatest)))
-    }
-
-    /// One beam around all lanes, in all lanes.
-    pub(super) fn around(&self) -> Self {
-        let low = |x: f32x8| f32x8::splat(x.reduce_min());
-        let high = |x: f32x8| f32x8::splat(x.reduce_max());
-        let mut beam = Self { t_near: low(self.t_near), ..*self };
-        for axis in 0..3 {
-            let negative = self.negative[axis];
-            let (near, far) = (self.near_org[axis], self.far_org[axis]);
-            let (least, greatest) = (self.rdir_least[axis], self.rdir_greatest[axis]);
-            (beam.near_org[axis], beam.far_org[axis]) =
-                if negative { (low(near), high(far)) } else { (high(near), low(far)) };
-            (beam.rdir_least[axis], beam.rdir_greatest[axis]) =
-                if negative { (high(least), low(greatest)) } else { (low(least), high(greatest)) };
-        }
-        beam
-    }
-
-    fn new(org: [Range; 3], rdir: [Range; 3], t_near: f32x8) -> Option<Self> {
-        let zero = [f32x8::default(); 3];
-        let mut beam = Self {
-            negative: [false; 3],
-            near_org: zero,
-            far_org: zero,
-            rdir_least: zero,
-            rdir_greatest: zero,
-            t_near,
-        };
-        for axis in 0..3 {
-            let ((org_low, org_high), (low, high)) = (org[axis], rdir[axis]);
-            let negative = high.lt(f32x8::zero());
-            if negative.all() {
-                beam.negative[axis] = true;
-                (beam.near_org[axis], beam.far_org[axis]) = (org_low, org_high);
-                (beam.rdir_least[axis], beam.rdir_greatest[axis]) = (high, low);
-            } else if low.ge(f32x8::zero()).all() {
-                (beam.near_org[axis], beam.far_org[axis]) = (org_high, org_low);
-                (beam.rdir_least[axis], beam.rdir_greatest[axis]) = (low, high);
-            } else {
-                return None;
-            }
-        }
-        Some(beam)
-    }
-
-    /// Which lanes may enter their box, and a bound on where. `planes(axis)` gives the bounds that are met
-    /// first and last.
-    #[inline]
-    pub(super) fn meets(&self, planes: impl Fn(usize) -> (f32x8, f32x8), farthest: f32x8) -> (Mask8, f32x8) {
-        let (mut low, mut high) = (self.t_near, farthest);
-        for axis in 0..3 {
-            let (near, far) = planes(axis);
-            let (near, far) = (near - self.near_org[axis], far - self.far_org[axis]);
-            // 0·∞: a ray in the plane itself, which does not constrain. NaN is kept because it stands
-            // on the right, and then loses against `low` and `high`.
-            let near = (near * self.rdir_least[axis]).min(near * self.rdir_greatest[axis]);
-            let far = (far * self.rdir_least[axis]).max(far * self.rdir_greatest[axis]);
-            low = near.max(low);
-            high = (far * f32x8::splat(aabb::WIDEN)).min(high);
-        }
-        (low.le(high), low)
     }
 
     /// The children of a node that a beam may enter; lanes are children, and so all lanes one beam.
@@ -141,29 +62,169 @@ impl Beam {
         self.meets(planes, f32x8::splat(farthest))
     }
 
+    /// The same for a beam from one origin, and what its rays and narrower beams need to know of the planes.
+    #[inline]
+    pub(super) fn children_ahead(&self, node: &Node, farthest: f32) -> (Mask8, f32x8, Distances) {
+        let nowhere = [[0.0; LANES]; 3];
+        let mut distances = Distances { near: nowhere, far: nowhere, ahead: Mask8::splat(true) };
+        let (mut low, mut high) = (self.t_near, f32x8::splat(farthest));
+        for axis in 0..3 {
+            let (near, far) = node.slabs(axis, self.negative[axis]);
+            let near = f32x8::from(*near) - self.near_org[axis];
+            let far = f32x8::from(*far) - self.far_org[axis];
+            (distances.near[axis], distances.far[axis]) = (near.to_array(), far.to_array());
+            let (near, far) = self.meets_slab(axis, near, far);
+            distances.ahead = distances.ahead & f32x8::zero().lt(near);
+            low = near.max(low);
+            high = far.min(high);
+        }
+        (low.le(high), low, distances)
+    }
+}
+
+impl Beam<f32x16> {
+    /// The beams of up to four runs, a bundle each, the last of them in what lanes are left; `None` if they point into
+    /// several octants.
+    pub(super) fn of_runs(runs: [&Extent; 4]) -> Option<Self> {
+        let lanes = |of: fn(&Extent) -> &[extent::Range; 3], axis: usize| {
+            let [a, b, c, d] = runs.map(|extent| of(extent)[axis]);
+            let of_quarters = |[a, b, c, d]: [[f32; 4]; 4]| {
+                f32x16::of_halves([f32x8::of_halves(a, b), f32x8::of_halves(c, d)])
+            };
+            (of_quarters([a.0, b.0, c.0, d.0]), of_quarters([a.1, b.1, c.1, d.1]))
+        };
+        let org = [0, 1, 2].map(|axis| lanes(|extent| &extent.org, axis));
+        let rdir = [0, 1, 2].map(|axis| lanes(|extent| &extent.rdir, axis));
+        let t_near = runs.iter().fold(f32::INFINITY, |least, extent| Real::min(least, extent.t_near));
+        Self::new(org, rdir, f32x16::splat(t_near))
+    }
+
+    /// The directions of the beams, if all of them have one origin.
+    pub(super) fn pencils(&self) -> Option<Pencils> {
+        let origin = |axis: usize| {
+            let first = f32x16::splat(self.near_org[axis].lane(0));
+            let same = first.equal(self.near_org[axis]) & first.equal(self.far_org[axis]);
+            (!same).none().then(|| first.lane(0))
+        };
+        let org = glam::vec3(origin(0)?, origin(1)?, origin(2)?);
+        let one = f32x16::splat(1.0);
+        // Least and greatest in magnitude are each other's reciprocals.
+        let least =
+            vector3(self.rdir_greatest[0], self.rdir_greatest[1], self.rdir_greatest[2]).map(|r| one / r);
+        let greatest = vector3(self.rdir_least[0], self.rdir_least[1], self.rdir_least[2]).map(|r| one / r);
+        Some(Pencils::new(org, least.min(greatest), least.max(greatest)))
+    }
+
+    /// One beam around all lanes, in all lanes.
+    pub(super) fn around(&self) -> Beam<f32x8> {
+        let low = |x: f32x16| f32x8::splat(x.reduce_min());
+        let high = |x: f32x16| f32x8::splat(x.reduce_max());
+        let turned = |axis: usize, near: f32x16, far: f32x16| match self.negative[axis] {
+            true => (low(near), high(far)),
+            false => (high(near), low(far)),
+        };
+        let org = [0, 1, 2].map(|axis| turned(axis, self.near_org[axis], self.far_org[axis]));
+        let rdir = [0, 1, 2].map(|axis| turned(axis, self.rdir_greatest[axis], self.rdir_least[axis]));
+        Beam {
+            negative: self.negative,
+            near_org: org.map(|(near, _)| near),
+            far_org: org.map(|(_, far)| far),
+            rdir_least: rdir.map(|(_, least)| least),
+            rdir_greatest: rdir.map(|(greatest, _)| greatest),
+            t_near: low(self.t_near),
+        }
+    }
+
     /// The beams that may enter a child; lanes are beams.
     #[inline]
-    pub(super) fn beams(&self, node: &Node, place: usize, farthest: f32x8) -> Mask8 {
+    pub(super) fn beams(&self, node: &Node, place: usize, farthest: f32x16) -> Mask16 {
         self.meets(|axis| self.planes(node, place, axis), farthest).0
+    }
+
+    /// The same for beams from one origin and a child that is [ahead](Distances::ahead): which end of a beam meets a
+    /// plane first is known.
+    #[inline]
+    pub(super) fn beams_ahead(&self, distances: &Distances, place: usize, farthest: f32x16) -> Mask16 {
+        let (mut low, mut high) = (self.t_near, farthest);
+        for axis in 0..3 {
+            let near = f32x16::splat(distances.near[axis][place]) * self.rdir_least[axis];
+            let far = f32x16::splat(distances.far[axis][place]) * self.rdir_greatest[axis];
+            low = near.max(low);
+            high = (far * f32x16::splat(aabb::WIDEN)).min(high);
+        }
+        low.le(high)
+    }
+}
+
+impl<R: Real> Beam<R> {
+    fn new(org: [Range<R>; 3], rdir: [Range<R>; 3], t_near: R) -> Option<Self> {
+        let zero = [R::zero(); 3];
+        let mut beam = Self {
+            negative: [false; 3],
+            near_org: zero,
+            far_org: zero,
+            rdir_least: zero,
+            rdir_greatest: zero,
+            t_near,
+        };
+        for axis in 0..3 {
+            let ((org_low, org_high), (low, high)) = (org[axis], rdir[axis]);
+            if (!high.lt(R::zero())).none() {
+                beam.negative[axis] = true;
+                (beam.near_org[axis], beam.far_org[axis]) = (org_low, org_high);
+                (beam.rdir_least[axis], beam.rdir_greatest[axis]) = (high, low);
+            } else if (!low.ge(R::zero())).none() {
+                (beam.near_org[axis], beam.far_org[axis]) = (org_high, org_low);
+                (beam.rdir_least[axis], beam.rdir_greatest[axis]) = (low, high);
+            } else {
+                return None;
+            }
+        }
+        Some(beam)
+    }
+
+    /// Which lanes may enter their box, and a bound on where. `planes(axis)` gives the bounds that are met
+    /// first and last.
+    #[inline]
+    fn meets(&self, planes: impl Fn(usize) -> (R, R), farthest: R) -> (R::Mask, R) {
+        let (mut low, mut high) = (self.t_near, farthest);
+        for axis in 0..3 {
+            let (near, far) = planes(axis);
+            let (near, far) = self.meets_slab(axis, near - self.near_org[axis], far - self.far_org[axis]);
+            low = near.max(low);
+            high = far.min(high);
+        }
+        (low.le(high), low)
+    }
+
+    /// Bounds on where the planes of a slab are met, by their distances from the origins.
+    ///
+    /// 0·∞ is a ray in the plane itself, which does not constrain. NaN is kept, and loses where it stands on the left
+    /// of a maximum or minimum.
+    #[inline]
+    fn meets_slab(&self, axis: usize, near: R, far: R) -> (R, R) {
+        let near = (near * self.rdir_least[axis]).min(near * self.rdir_greatest[axis]);
+        let far = (far * self.rdir_least[axis]).max(far * self.rdir_greatest[axis]);
+        (near, far * R::splat(aabb::WIDEN))
     }
 
     /// The rays of a packet within the beam that enter a child before `t_far`: the exact test; lanes are
     /// rays.
     #[inline]
-    pub(super) fn rays<R: Real>(&self, node: &Node, place: usize, ray: &RayLanes<R>, t_far: R) -> R::Mask {
+    pub(super) fn rays<P: Real>(&self, node: &Node, place: usize, ray: &RayLanes<P>, t_far: P) -> P::Mask {
         let [x, y, z] = [0, 1, 2].map(|axis| self.planes(node, place, axis));
         let (near, far) = (vector3(x.0, y.0, z.0), vector3(x.1, y.1, z.1));
         let near = (near - ray.org) * ray.rdir;
-        let far = ((far - ray.org) * ray.rdir).scale(R::splat(aabb::WIDEN));
+        let far = ((far - ray.org) * ray.rdir).scale(P::splat(aabb::WIDEN));
         let low = near.z.max(near.y.max(near.x.max(ray.t_near)));
         low.le(far.z.min(far.y.min(far.x.min(t_far))))
     }
 
     /// The bounds of one child along an axis, in all lanes.
     #[inline]
-    fn planes<R: Real>(&self, node: &Node, place: usize, axis: usize) -> (R, R) {
+    fn planes<P: Real>(&self, node: &Node, place: usize, axis: usize) -> (P, P) {
         let (near, far) = node.slabs(axis, self.negative[axis]);
-        (R::splat(near[place]), R::splat(far[place]))
+        (P::splat(near[place]), P::splat(far[place]))
     }
 }
 

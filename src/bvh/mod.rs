@@ -4,7 +4,7 @@
 //! class into *slots*, eight to a block, and it hands ranges of slots to whoever knows what is in them
 //! ([`Leaves`]).
 //!
-//! `build` makes it, by one of three qualities ([`Quality`]). Traversal: tiles of up to 128 rays, packets of
+//! `build` makes it, by one of three qualities ([`Quality`]). Traversal: tiles of up to 256 rays, packets of
 //! eight and of sixteen, thirty-two single rays in turn, one ray that meets a tree within another, or one ray
 //! and one box at a time, the reference for the others; closest hit and occlusion from one body each.
 
@@ -129,17 +129,17 @@ pub trait Leaves {
         hit: &mut Hitx16,
     );
 
-    /// Eight bundles of sixteen rays, of which those in `mask` may hit something, against a leaf's (first slot, count).
+    /// Sixteen bundles of sixteen rays, of which those in `mask` may hit something, against a leaf's (first slot, count).
     /// `pencils` are around them, if they come from one origin. Returns how many tests of a bundle
-    /// against a primitive that took.
+    /// against a primitive that took, and which bundles may have found something.
     fn intersect_tile<const ANY: bool>(
         &self,
         leaf: (u32, u32),
-        rays: &[&Rayx16; 8],
+        rays: &[&Rayx16; 16],
         pencils: Option<&Pencils>,
         mask: u32,
-        hits: &mut [Hitx16; 8],
-    ) -> u32;
+        hits: &mut [Hitx16; 16],
+    ) -> (u32, u32);
 
     /// Where the data of a slot's block begin, to be asked for ahead of time.
     fn address(&self, slot: u32) -> *const u8;

@@ -149,7 +149,7 @@ impl Bvh {
 fn enter_together<R: Packet>(
     node: &Node,
     ray: &RayLanes<R>,
-    beam: &Beam,
+    beam: &Beam<f32x8>,
     t_far: R,
     farthest: f32,
     stack: &mut [(Child, f32)],

@@ -8,6 +8,7 @@ use super::{
     extent::{Extent, diagonal},
     habit::{Coherence, Habit},
     occluder::Occluder,
+    stream::TILE_RUNS,
 };
 use crate::geometry::{Ray, RayLanes, Rayx8, Rayx16};
 use crate::simd::{LANES, Mask, Mask16, Real, Vec3x16, f32x8, transpose, u32x8};
@@ -169,16 +170,16 @@ impl Run {
 
 /// The runs of a stream, one after the other, and what has been learnt from those before.
 pub(super) struct Runs {
-    /// The run that is looked at, and the one after it.
-    run: Box<[Run; 2]>,
+    /// The run that is looked at, and those after it.
+    run: Box<[Run; TILE_RUNS]>,
     next: usize,
     /// What would have suited the last run.
     grouping: Grouping,
     forced: Way,
     /// The ways of those that are loaded and have not been taken.
-    waiting: [Option<Way>; 2],
+    waiting: [Option<Way>; TILE_RUNS],
     /// How their rays lie together.
-    coherence: [Coherence; 2],
+    coherence: [Coherence; TILE_RUNS],
     /// Is the tree one that scattered rays had better go through alone?
     far: bool,
     /// What has been learnt from closest hits and from occlusion, of each kind of rays.
@@ -192,12 +193,12 @@ impl Default for Runs {
         let (bundles, grouping) = ([nothing; BUNDLES], Grouping::Rows);
         let run = || Run { first: 0, len: 0, grouping, bundles, extent: None, active: 0, blocked: 0 };
         Self {
-            run: Box::new([run(), run()]),
+            run: Box::new(std::array::from_fn(|_| run())),
             next: 0,
             grouping: Grouping::Rows,
             forced: Way::Chosen,
-            waiting: [None; 2],
-            coherence: [Coherence::Scattered; 2],
+            waiting: [None; TILE_RUNS],
+            coherence: [Coherence::Scattered; TILE_RUNS],
             far: false,
             habits: [[Habit::default(); Coherence::COUNT]; 2],
             occluder: Occluder::default(),
@@ -208,7 +209,7 @@ impl Default for Runs {
 impl Runs {
     /// Begins a stream.
     pub(super) fn start(&mut self, way: Way, far: bool) {
-        (self.next, self.forced, self.waiting, self.far) = (0, way, [None; 2], far);
+        (self.next, self.forced, self.waiting, self.far) = (0, way, [None; TILE_RUNS], far);
         self.occluder.forget();
     }
 
@@ -220,10 +221,10 @@ impl Runs {
         tally: &mut T,
     ) -> Option<Way> {
         if self.waiting[0].is_none() {
-            if self.waiting[1].is_some() {
-                self.run.swap(0, 1);
-                self.waiting.swap(0, 1);
-                self.coherence.swap(0, 1);
+            if let Some(left) = (1..TILE_RUNS).find(|&i| self.waiting[i].is_some()) {
+                self.run.swap(0, left);
+                self.waiting.swap(0, left);
+                self.coherence.swap(0, left);
             } else {
                 self.load::<ANY, L, S, T>(0, leaves, stream, tally);
             }
@@ -263,7 +264,7 @@ impl Runs {
         &self.run[0]
     }
 
-    /// The run that was looked at and goes as a tile, and the one after it if that goes with it.
+    /// The run that was looked at and goes as a tile, and those after it as far as they go with it.
     pub(super) fn take_tile<const ANY: bool, L: Leaves, S: Stream, T: Tally>(
         &mut self,
         leaves: &L,
@@ -271,13 +272,16 @@ impl Runs {
         tally: &mut T,
     ) -> &[Run] {
         self.waiting[0] = None;
-        self.load::<ANY, L, S, T>(1, leaves, stream, tally);
-        let [one, other] = &*self.run;
-        let together = self.waiting[1] == Some(Way::Tile) && one.goes_with(other);
-        if together {
-            self.waiting[1] = None;
+        let mut count = 1;
+        while count < TILE_RUNS {
+            self.load::<ANY, L, S, T>(count, leaves, stream, tally);
+            if self.waiting[count] != Some(Way::Tile) || !self.run[0].goes_with(&self.run[count]) {
+                break;
+            }
+            self.waiting[count] = None;
+            count += 1;
         }
-        &self.run[..1 + usize::from(together)]
+        &self.run[..count]
     }
 
     /// The [`Coherence`] of the run that was looked at, as a set.

@@ -66,11 +66,12 @@ impl<T> Tracer<T> {
     }
 }
 
-/// Bundles in a tile: those of two runs.
-pub(super) const TILE: usize = 2 * BUNDLES;
+/// Runs in a tile, and their bundles.
+pub(super) const TILE_RUNS: usize = 4;
+pub(super) const TILE: usize = TILE_RUNS * BUNDLES;
 
-/// How many rays a stream expects before they are loaded: a tile, or two runs.
-pub(super) const AHEAD: usize = 2 * RUN;
+/// How many rays a stream expects before they are loaded: a tile.
+pub(super) const AHEAD: usize = TILE_RUNS * RUN;
 
 /// Asks memory for the next rays step by step, while those before are traced: all at once would be more than it can
 /// have on its way, and the processor would wait until the queue is shorter.
@@ -108,7 +109,7 @@ impl<'a, S: Stream> Ahead<'a, S> {
 pub enum Way {
     /// Whatever suits the rays.
     Chosen,
-    /// Tiles of up to 128, as packets where they point into several octants.
+    /// Tiles of up to 256, as packets where they point into several octants.
     Tile,
     /// Packets of sixteen.
     Packet,
@@ -156,7 +157,7 @@ impl Bvh {
         }
     }
 
-    /// Traces one or two runs as a tile if they are whole and point into one octant.
+    /// Traces up to four runs as a tile if they are whole and point into one octant.
     fn tile<const ANY: bool, L: Leaves, S: Stream, T: Tally>(
         &self,
         leaves: &L,
@@ -164,8 +165,8 @@ impl Bvh {
         runs: &[Run],
         traversal: &mut Traversal<T>,
     ) -> Option<Cost> {
-        let (one, other) = (runs.first()?.extent()?, runs.last()?.extent()?);
-        let beams = Beam::of_runs(one, other)?;
+        let extent = |i: usize| runs.get(i).or(runs.last()).and_then(Run::extent);
+        let beams = Beam::of_runs([extent(0)?, extent(1)?, extent(2)?, extent(3)?])?;
         let bundle = |i: usize| runs.get(i / BUNDLES).map(|run| &run.bundles[i % BUNDLES]);
         let rays = std::array::from_fn(|i| bundle(i).unwrap_or(&runs[0].bundles[0]));
         // Nothing is hit before −∞, where there is no ray.

@@ -1,9 +1,9 @@
-//! A hundred and twenty-eight rays through the tree together: eight bundles into one octant.
+//! Two hundred and fifty-six rays through the tree together: sixteen bundles into one octant.
 //!
 //! A node is tested by the bounds of all rays against its eight boxes (lanes are boxes), then by the bounds
-//! of the eight bundles against each box that is left (lanes are bundles). At a leaf, the planes through a
+//! of the sixteen bundles against each box that is left (lanes are bundles). At a leaf, the planes through a
 //! triangle's edges and the common origin cull bundles, and the kernel decides about the others. A step that
-//! a bundle would take eight times is so taken once.
+//! a bundle would take sixteen times is so taken once.
 
 use super::{
     Bvh, Child, Hitx16, Kind, Leaves, Node, Stream, Tally, Traversal,
@@ -13,7 +13,7 @@ use super::{
     stream::{Ahead, TILE},
 };
 use crate::geometry::Rayx16;
-use crate::simd::{Mask, Real, f32x8};
+use crate::simd::{Mask, Real, f32x16};
 
 /// Up to so many bundles, each tests a leaf's box with its rays.
 const FEW: u32 = 4;
@@ -23,7 +23,7 @@ impl Bvh {
     pub(super) fn intersect_tile<const ANY: bool, L: Leaves, S: Stream, T: Tally>(
         &self,
         leaves: &L,
-        (rays, beams): (&[&Rayx16; TILE], &Beam),
+        (rays, beams): (&[&Rayx16; TILE], &Beam<f32x16>),
         hits: &mut [Hitx16; TILE],
         ahead: &mut Ahead<S>,
         traversal: &mut Traversal<T>,
@@ -34,11 +34,11 @@ impl Bvh {
         }
         let (all, pencils) = (beams.around(), beams.pencils());
         let Traversal { stack, tally, .. } = traversal;
-        let mut farthest = f32x8::from_fn(|i| hits[i].t.reduce_max());
+        let mut farthest = f32x16::from_fn(|i| hits[i].t.reduce_max());
         let mut end = farthest.reduce_max();
-        let mut masks = [0u8; super::STACK];
+        let mut masks = [0u16; super::STACK];
         stack[0] = (Child::inner(0), f32::NEG_INFINITY);
-        masks[0] = u8::MAX;
+        masks[0] = u16::MAX;
         let mut top = 1;
         while top > 0 {
             top -= 1;
@@ -47,21 +47,27 @@ impl Bvh {
             if enter > end {
                 continue;
             }
-            let mask = mask & f32x8::splat(enter).le(farthest).to_bitmask();
+            let mask = mask & f32x16::splat(enter).le(farthest).to_bitmask();
             match child.kind() {
                 Kind::Absent => {}
                 Kind::Inner(index) => {
                     let node = &self.nodes[index as usize];
                     (0..mask.count_ones()).for_each(|_| tally.node(BUNDLE as u32));
-                    let (candidates, enters) = all.children(node, end);
+                    let (candidates, enters, distances) = all.children_ahead(node, end);
                     let enters = enters.to_array();
                     let mut candidates = candidates.to_bitmask();
+                    let known = if pencils.is_some() { distances.ahead.to_bitmask() } else { 0 };
                     cost += Cost::TILE_NODE + Cost::TILE_CHILD * candidates.count_ones();
                     let bottom = top;
                     while candidates != 0 {
                         let place = candidates.trailing_zeros() as usize;
                         candidates &= candidates - 1;
-                        let mut mask = mask & beams.beams(node, place, farthest).to_bitmask();
+                        let meets = if known >> place & 1 != 0 {
+                            beams.beams_ahead(&distances, place, farthest)
+                        } else {
+                            beams.beams(node, place, farthest)
+                        };
+                        let mut mask = mask & meets.to_bitmask();
                         let child = node.children[place];
                         // Planes are tested once for all bundles: no box is worth it for more than a few.
                         if child.is_leaf() && (pencils.is_none() || mask.count_ones() <= FEW) {
@@ -74,21 +80,27 @@ impl Bvh {
                                 (stack[at], masks[at]) = (stack[at - 1], masks[at - 1]);
                                 at -= 1;
                             }
-                            (stack[at], masks[at]) = ((child, enters[place]), mask as u8);
+                            (stack[at], masks[at]) = ((child, enters[place]), mask as u16);
                             top += 1;
                         }
                     }
                 }
                 Kind::Leaf { first, count } => {
                     let pencils = pencils.as_ref();
-                    let tests = leaves.intersect_tile::<ANY>((first, count), rays, pencils, mask, hits);
+                    let (tests, mut nearer) =
+                        leaves.intersect_tile::<ANY>((first, count), rays, pencils, mask, hits);
                     tally.leaf(tests, BUNDLE as u32);
                     cost += Cost::TILE_LEAF + Cost::TILE_PLANES * count + Cost::PACKET_TEST * tests;
+                    if nearer == 0 {
+                        continue;
+                    }
                     let mut limits = farthest.to_array();
-                    for bundle in (0..TILE).filter(|bundle| mask >> bundle & 1 != 0) {
+                    while nearer != 0 {
+                        let bundle = nearer.trailing_zeros() as usize % TILE;
+                        nearer &= nearer - 1;
                         limits[bundle] = hits[bundle].t.reduce_max();
                     }
-                    farthest = f32x8::from(limits);
+                    farthest = f32x16::new(limits);
                     end = farthest.reduce_max();
                     if ANY && end == f32::NEG_INFINITY {
                         break;
@@ -105,7 +117,7 @@ impl Bvh {
 fn rays_enter(
     node: &Node,
     place: usize,
-    beams: &Beam,
+    beams: &Beam<f32x16>,
     rays: &[&Rayx16; TILE],
     hits: &[Hitx16; TILE],
     mask: u32,

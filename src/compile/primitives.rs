@@ -262,31 +262,32 @@ impl Leaves for Primitives {
     fn intersect_tile<const ANY: bool>(
         &self,
         (first, count): (u32, u32),
-        rays: &[&Rayx16; 8],
+        rays: &[&Rayx16; 16],
         pencils: Option<&Pencils>,
         mask: u32,
-        hits: &mut [Hitx16; 8],
-    ) -> u32 {
+        hits: &mut [Hitx16; 16],
+    ) -> (u32, u32) {
         let every = Mask16::splat(true);
+        let bundles = (0..16).filter(|bundle| mask >> bundle & 1 != 0);
         let Some(block) = self.triangles.get(first as usize / BLOCK) else {
-            for bundle in (0..8).filter(|bundle| mask >> bundle & 1 != 0) {
+            for bundle in bundles {
                 self.intersect_bundle::<ANY>(first, count, rays[bundle], every, &mut hits[bundle]);
             }
-            return mask.count_ones() * count;
+            return (mask.count_ones() * count, mask);
         };
         let Some(pencils) = pencils else {
             let first = first as usize;
             for slot in first..first + count as usize {
                 let (lane, id) = (slot % BLOCK, &self.triangle_ids[slot]);
                 let triangle = block.splat::<f32x16>(lane);
-                for bundle in (0..8).filter(|bundle| mask >> bundle & 1 != 0) {
+                for bundle in bundles.clone() {
                     let ray = rays[bundle];
                     let aspect = triangle.aspect(ray.org);
                     let seen = (&aspect, aspect.margin(triangle.edges, ray.margin));
                     block.intersect::<ANY, f32x16>((lane, id), seen, ray, every, &mut hits[bundle]);
                 }
             }
-            return mask.count_ones() * count;
+            return (mask.count_ones() * count, mask);
         };
         // From the one origin of all, for all triangles of the block at once.
         let triangles = block.lanes();
@@ -303,19 +304,20 @@ impl Leaves for Primitives {
             }
         }
         let aspects = AspectColumns::new(&aspects);
-        let mut tests = 0;
+        let (mut tests, mut found) = (0, 0);
         for (lane, &margin) in margins.iter().enumerate().skip(lane).take(count as usize) {
             let id = &self.triangle_ids[first as usize / BLOCK * BLOCK + lane];
             let mut left = near[lane];
             tests += left.count_ones();
             while left != 0 {
-                let bundle = left.trailing_zeros() as usize % 8;
+                let bundle = left.trailing_zeros() as usize % 16;
                 left &= left - 1;
                 let seen = (&aspects, margin);
-                block.intersect_bundle::<ANY>((lane, id), seen, rays[bundle], &mut hits[bundle]);
+                let hit = block.intersect_bundle::<ANY>((lane, id), seen, rays[bundle], &mut hits[bundle]);
+                found |= u32::from(hit) << bundle;
             }
         }
-        tests
+        (tests, found)
     }
 
     #[inline]

@@ -12,7 +12,7 @@
 use glam::Vec3;
 
 use super::{Aspect, triangle::roundings};
-use crate::simd::{LANES, Mask8, Real, Vec3x8, f32x8};
+use crate::simd::{LANES, Mask16, Real, Vec3x8, Vec3x16, f32x8, f32x16};
 
 /// Roundings, in ulps of |dir|·(|s|·(|e₁| + |e₂|) + |e₁|·|e₂|): the kernel's products take part with at
 /// most 10 each, these with as many, and the middle and the radius of the directions with 4.
@@ -24,10 +24,10 @@ const LEAST: f32 = 1e-34;
 #[derive(Clone, Copy, Debug)]
 pub struct Pencils {
     org: Vec3,
-    middle: Vec3x8,
-    radius: Vec3x8,
+    middle: Vec3x16,
+    radius: Vec3x16,
     /// Greatest |x| + |y| + |z| of a direction.
-    length: f32x8,
+    length: f32x16,
     /// What all of them have to do with the margins of triangles.
     rounding: Vec3,
 }
@@ -35,15 +35,15 @@ pub struct Pencils {
 impl Pencils {
     /// Directions between two corners, which may be off by an ulp or two.
     #[inline]
-    pub fn new(org: Vec3, low: Vec3x8, high: Vec3x8) -> Self {
-        let half = f32x8::splat(0.5);
+    pub fn new(org: Vec3, low: Vec3x16, high: Vec3x16) -> Self {
+        let half = f32x16::splat(0.5);
         let greatest = low.abs().max(high.abs());
         Self {
             org,
             middle: (low + high).scale(half),
             radius: (high - low).scale(half),
             length: greatest.element_sum(),
-            rounding: roundings(greatest).each(f32x8::reduce_max).into(),
+            rounding: roundings(greatest).each(f32x16::reduce_max).into(),
         }
     }
 
@@ -61,10 +61,10 @@ impl Pencils {
 
     /// Which pencils may hold a ray that hits the triangle in a lane of the planes.
     #[inline]
-    pub fn meet(&self, planes: &EdgePlanes, lane: usize) -> Mask8 {
-        let margin = f32x8::splat(planes.margin[lane]).fused(self.length, f32x8::splat(LEAST));
+    pub fn meet(&self, planes: &EdgePlanes, lane: usize) -> Mask16 {
+        let margin = f32x16::splat(planes.margin[lane]).fused(self.length, f32x16::splat(LEAST));
         let along = |plane: &[[f32; LANES]; 3]| {
-            let [x, y, z] = [0, 1, 2].map(|axis| f32x8::splat(plane[axis][lane]));
+            let [x, y, z] = [0, 1, 2].map(|axis| f32x16::splat(plane[axis][lane]));
             let middle = self.middle.z.fused(z, self.middle.y.fused(y, self.middle.x * x));
             let radius = self.radius.z.fused(z.abs(), self.radius.y.fused(y.abs(), self.radius.x * x.abs()));
             (middle - radius, middle + radius)

@@ -96,6 +96,12 @@ impl f32x16 {
         self.0.as_mut_array()[i * 4..i * 4 + 4].copy_from_slice(&quarter);
     }
 
+    /// As [`f32x8::fused`].
+    #[inline]
+    pub fn fused(self, factor: Self, addend: Self) -> Self {
+        Self(self.0.mul_add(factor.0, addend.0))
+    }
+
     /// The least lane; lanes that are NaN may or may not count.
     #[inline]
     pub fn reduce_min(self) -> f32 {

@@ -68,7 +68,8 @@ impl TriangleBlock {
         TriangleLanes { v0, v1, v2, edges: R::splat(self.edges[lane]) }
     }
 
-    /// A packet against the triangle in a lane, seen from the packet's origins.
+    /// A packet against the triangle in a lane, seen from the packet's origins. Returns whether anything may have been
+    /// found.
     // Always: as a call, rays and triangles would go through memory.
     #[inline(always)]
     pub(super) fn intersect<const ANY: bool, R: Real>(
@@ -78,19 +79,24 @@ impl TriangleBlock {
         ray: &RayLanes<R>,
         active: R::Mask,
         hit: &mut HitLanes<R>,
-    ) {
+    ) -> bool {
         let limited = RayLanes { t_far: hit.t, ..*ray };
         match self.splat(lane).intersect_seen(aspect, margin, &limited, active) {
             Some((found, t, u, v)) => {
-                if found.any() {
+                let any = found.any();
+                if any {
                     accept::<ANY, R>(hit, found, (t, u, v), || R::Bits::splat(*id));
                 }
+                any
             }
-            None => self.intersect_carefully::<ANY, R>((lane, *id), ray, active.to_bitmask(), hit),
+            None => {
+                self.intersect_carefully::<ANY, R>((lane, *id), ray, active.to_bitmask(), hit);
+                true
+            }
         }
     }
 
-    /// A bundle of rays from one origin against the triangle in a lane.
+    /// A bundle of rays from one origin against the triangle in a lane. Returns whether anything may have been found.
     #[inline(always)]
     pub(super) fn intersect_bundle<const ANY: bool>(
         &self,
@@ -98,13 +104,14 @@ impl TriangleBlock {
         (aspects, margin): (&AspectColumns, f32),
         ray: &Rayx16,
         hit: &mut Hitx16,
-    ) {
+    ) -> bool {
         let every = Mask16::splat(true);
         if ONE_REGISTER {
             let aspect = (&aspects.splat(lane), f32x16::splat(margin));
             return self.intersect::<ANY, f32x16>((lane, id), aspect, ray, every, hit);
         }
         let (triangle, aspect) = (self.splat(lane), aspects.splat(lane));
+        let mut any = false;
         for half in 0..2 {
             let limited = RayLanes { t_far: hit.t.half(half), ..ray.half(half) };
             let all = Mask8::splat(true);
@@ -114,15 +121,18 @@ impl TriangleBlock {
                         let mut hits = hit.half(half);
                         accept::<ANY, f32x8>(&mut hits, found, (t, u, v), || u32x8::splat(*id));
                         hit.put_half(half, &hits);
+                        any = true;
                     }
                 }
                 // Whole: a hit that is found again changes nothing.
                 None => {
                     let every = every.to_bitmask();
-                    return self.intersect_carefully::<ANY, f32x16>((lane, *id), ray, every, hit);
+                    self.intersect_carefully::<ANY, f32x16>((lane, *id), ray, every, hit);
+                    return true;
                 }
             }
         }
+        any
     }
 
     /// The same next to an edge.
