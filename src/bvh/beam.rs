@@ -112,7 +112,7 @@ impl Beam<f32x16> {
         let least =
             vector3(self.rdir_greatest[0], self.rdir_greatest[1], self.rdir_greatest[2]).map(|r| one / r);
         let greatest = vector3(self.rdir_least[0], self.rdir_least[1], self.rdir_least[2]).map(|r| one / r);
-        Some(Pencils::new(org, least.min(greatest), least.max(greatest)))
+        Some(Pencils::new(org, self.negative, least.min(greatest), least.max(greatest)))
     }
 
     /// One beam around all lanes, in all lanes.
@@ -216,6 +216,22 @@ impl<R: Real> Beam<R> {
         let (near, far) = (vector3(x.0, y.0, z.0), vector3(x.1, y.1, z.1));
         let near = (near - ray.org) * ray.rdir;
         let far = ((far - ray.org) * ray.rdir).scale(P::splat(aabb::WIDEN));
+        let low = near.z.max(near.y.max(near.x.max(ray.t_near)));
+        low.le(far.z.min(far.y.min(far.x.min(t_far))))
+    }
+
+    /// The same for rays from the one origin from which distances are taken.
+    #[inline]
+    pub(super) fn rays_ahead<P: Real>(
+        distances: &Distances,
+        place: usize,
+        ray: &RayLanes<P>,
+        t_far: P,
+    ) -> P::Mask {
+        let of = |planes: &[[f32; LANES]; 3]| planes.map(|planes| P::splat(planes[place]));
+        let ([x, y, z], [far_x, far_y, far_z]) = (of(&distances.near), of(&distances.far));
+        let near = vector3(x, y, z) * ray.rdir;
+        let far = (vector3(far_x, far_y, far_z) * ray.rdir).scale(P::splat(aabb::WIDEN));
         let low = near.z.max(near.y.max(near.x.max(ray.t_near)));
         low.le(far.z.min(far.y.min(far.x.min(t_far))))
     }

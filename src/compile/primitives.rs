@@ -303,7 +303,8 @@ impl Leaves for Primitives {
                 near[lane] &= pencils.meet(&planes, lane).to_bitmask();
             }
         }
-        let aspects = AspectColumns::new(&aspects);
+        let seen_by = (pencils.org(), pencils.negative());
+        let aspects = AspectColumns::new(&aspects, triangles.corners(), seen_by);
         let (mut tests, mut found) = (0, 0);
         for (lane, &margin) in margins.iter().enumerate().skip(lane).take(count as usize) {
             let id = &self.triangle_ids[first as usize / BLOCK * BLOCK + lane];

@@ -91,5 +91,14 @@ pub fn interval<R: Real>(
     (z0.max(y0.max(x0.max(t_near))), z1.min(y1.min(x1.min(t_far))))
 }
 
+/// The t within all three slabs of boxes, by distances from the rays' common origin to the planes that are met first
+/// along each axis, and last: [`interval`] where all signs are known.
+#[inline]
+pub fn within_slabs<R: Real>(near: Vector3<R>, far: Vector3<R>, rdir: Vector3<R>) -> (R, R) {
+    let (near, far) = (near * rdir, (far * rdir).scale(R::splat(WIDEN)));
+    let low = near.z.max(near.y.max(near.x.max(R::splat(f32::NEG_INFINITY))));
+    (low, far.z.min(far.y.min(far.x.min(R::splat(f32::INFINITY)))))
+}
+
 #[cfg(test)]
 mod tests;

@@ -24,6 +24,8 @@ const LEAST: f32 = 1e-34;
 #[derive(Clone, Copy, Debug)]
 pub struct Pencils {
     org: Vec3,
+    /// Do the rays point into the negative direction of an axis?
+    negative: [bool; 3],
     middle: Vec3x16,
     radius: Vec3x16,
     /// Greatest |x| + |y| + |z| of a direction.
@@ -33,13 +35,14 @@ pub struct Pencils {
 }
 
 impl Pencils {
-    /// Directions between two corners, which may be off by an ulp or two.
+    /// Directions between two corners, which may be off by an ulp or two, into one octant.
     #[inline]
-    pub fn new(org: Vec3, low: Vec3x16, high: Vec3x16) -> Self {
+    pub fn new(org: Vec3, negative: [bool; 3], low: Vec3x16, high: Vec3x16) -> Self {
         let half = f32x16::splat(0.5);
         let greatest = low.abs().max(high.abs());
         Self {
             org,
+            negative,
             middle: (low + high).scale(half),
             radius: (high - low).scale(half),
             length: greatest.element_sum(),
@@ -57,6 +60,12 @@ impl Pencils {
     #[inline]
     pub fn org(&self) -> Vec3 {
         self.org
+    }
+
+    /// Whether the rays point into the negative direction of each axis.
+    #[inline]
+    pub fn negative(&self) -> [bool; 3] {
+        self.negative
     }
 
     /// Which pencils may hold a ray that hits the triangle in a lane of the planes.
@@ -139,7 +148,7 @@ mod tests {
             }
             let [v0, v1, v2] = [triangle.v0, triangle.v1, triangle.v2].map(Vec3x8::splat);
             let lanes = TriangleLanes { v0, v1, v2, edges: f32x8::splat(triangle.edges()) };
-            let pencils = Pencils::new(org, Vec3x8::from_fn(|i| low[i]), Vec3x8::from_fn(|i| high[i]));
+            let pencils = Pencils::new(org, [false; 3], Vec3x8::from_fn(|i| low[i]), Vec3x8::from_fn(|i| high[i]));
             let meet = pencils.meet(&lanes.aspect(Vec3x8::splat(org)).edge_planes(), 5).to_bitmask();
             for (lane, hit) in hit.into_iter().enumerate() {
                 hits += u32::from(hit);

@@ -23,9 +23,10 @@ mod aspect;
 
 use glam::Vec3;
 
+use aspect::within;
 pub use aspect::{Aspect, AspectColumns};
 
-use super::{Aabb, Ray, RayLanes, crossing::crossing};
+use super::{Aabb, Ray, RayLanes, aabb, crossing::crossing};
 use crate::simd::{Mask, Real, Vector3, vector3};
 
 /// Bound on the rounding of a numerator, in units of all its products: with a = |s| + |e₁| + |e₂| and
@@ -150,8 +151,21 @@ impl<R: Real> TriangleLanes<R> {
     pub fn aspect(&self, org: Vector3<R>) -> Aspect<R> {
         let (e1, e2) = (self.v1 - self.v0, self.v2 - self.v0);
         let s = org - self.v0;
-        let (min, max) = (self.v0.min(self.v1).min(self.v2), self.v0.max(self.v1).max(self.v2));
-        Aspect { e1, e2, s, q: s.cross(e1), min, max }
+        let q = s.cross(e1);
+        Aspect { e1, e2, s, q, depth: e2.dot(q) }
+    }
+
+    /// The (lower, upper) corners of their boxes.
+    #[inline(always)]
+    pub fn corners(&self) -> (Vector3<R>, Vector3<R>) {
+        (self.v0.min(self.v1).min(self.v2), self.v0.max(self.v1).max(self.v2))
+    }
+
+    /// Where rays are within their boxes.
+    #[inline(always)]
+    fn slabs(&self, ray: &RayLanes<R>) -> (R, R) {
+        let all = (R::splat(f32::NEG_INFINITY), R::splat(f32::INFINITY));
+        aabb::interval(self.corners(), (ray.org, ray.rdir), all)
     }
 
     /// Eight rays, eight triangles, or eight of each: (hit, t, u, v) of the lanes in `active`.
@@ -160,10 +174,10 @@ impl<R: Real> TriangleLanes<R> {
         let aspect = self.aspect(ray.org);
         let tested = aspect.test(aspect.margin(self.edges, ray.margin), ray, active);
         let doubtful = tested.near & !tested.certain;
-        let (t, u, v) = tested.quotients();
+        let (t, u, v) = tested.quotients(aspect.depth);
         let found = (tested.near & tested.certain, t, u, v);
         let found = if doubtful.any() { self.look_again(ray, doubtful, tested.inside, found) } else { found };
-        aspect.within(ray, found.0, (found.1, found.2, found.3))
+        within(ray, found.0, (found.1, found.2, found.3), self.slabs(ray))
     }
 
     /// The same for rays whose origin the triangles have been seen from; `None`, and [`intersect`](Self::intersect)
@@ -178,7 +192,7 @@ impl<R: Real> TriangleLanes<R> {
         ray: &RayLanes<R>,
         active: R::Mask,
     ) -> Option<(R::Mask, R, R, R)> {
-        aspect.answer(aspect.test(margin, ray, active), ray)
+        aspect.answer(&aspect.test(margin, ray, active), ray, || self.slabs(ray))
     }
 
     /// The same, for one ray and a block of triangles: rays that leave a surface cross the planes of those around them
@@ -193,7 +207,7 @@ impl<R: Real> TriangleLanes<R> {
     ) -> Option<(R::Mask, R, R, R)> {
         let mut tested = aspect.test(margin, ray, active);
         tested.near = tested.near & !(tested.certain & aspect.behind(self.edges, &tested, ray));
-        aspect.answer(tested, ray)
+        aspect.answer(&tested, ray, || self.slabs(ray))
     }
 
     /// Decides about lanes whose numerators are within the bound: by their margins, and within these by

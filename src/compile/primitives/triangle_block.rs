@@ -6,7 +6,7 @@ use super::accept;
 use crate::bvh::{BLOCK, HitLanes, Hitx16};
 use crate::compile::{corners::Corners, surfaces::Surfaces};
 use crate::geometry::{Aspect, AspectColumns, RayLanes, Rayx16, Triangle, TriangleLanes};
-use crate::simd::{Bits, Mask, Mask8, Mask16, ONE_REGISTER, Real, Vector3, f32x8, f32x16, u32x8, vector3};
+use crate::simd::{Bits, Mask, Mask8, Mask16, ONE_REGISTER, Real, Vector3, f32x8, f32x16, u32x8, u32x16, vector3};
 
 /// Memory is asked for the vertices of triangles so many blocks on, and for their numbers twice as far.
 const AHEAD: usize = 4;
@@ -68,8 +68,7 @@ impl TriangleBlock {
         TriangleLanes { v0, v1, v2, edges: R::splat(self.edges[lane]) }
     }
 
-    /// A packet against the triangle in a lane, seen from the packet's origins. Returns whether anything may have been
-    /// found.
+    /// A packet against the triangle in a lane, seen from the packet's origins.
     // Always: as a call, rays and triangles would go through memory.
     #[inline(always)]
     pub(super) fn intersect<const ANY: bool, R: Real>(
@@ -79,20 +78,15 @@ impl TriangleBlock {
         ray: &RayLanes<R>,
         active: R::Mask,
         hit: &mut HitLanes<R>,
-    ) -> bool {
+    ) {
         let limited = RayLanes { t_far: hit.t, ..*ray };
         match self.splat(lane).intersect_seen(aspect, margin, &limited, active) {
             Some((found, t, u, v)) => {
-                let any = found.any();
-                if any {
+                if found.any() {
                     accept::<ANY, R>(hit, found, (t, u, v), || R::Bits::splat(*id));
                 }
-                any
             }
-            None => {
-                self.intersect_carefully::<ANY, R>((lane, *id), ray, active.to_bitmask(), hit);
-                true
-            }
+            None => self.intersect_carefully::<ANY, R>((lane, *id), ray, active.to_bitmask(), hit),
         }
     }
 
@@ -105,34 +99,37 @@ impl TriangleBlock {
         ray: &Rayx16,
         hit: &mut Hitx16,
     ) -> bool {
-        let every = Mask16::splat(true);
-        if ONE_REGISTER {
-            let aspect = (&aspects.splat(lane), f32x16::splat(margin));
-            return self.intersect::<ANY, f32x16>((lane, id), aspect, ray, every, hit);
-        }
-        let (triangle, aspect) = (self.splat(lane), aspects.splat(lane));
         let mut any = false;
-        for half in 0..2 {
-            let limited = RayLanes { t_far: hit.t.half(half), ..ray.half(half) };
-            let all = Mask8::splat(true);
-            match triangle.intersect_seen(&aspect, f32x8::splat(margin), &limited, all) {
-                Some((found, t, u, v)) => {
-                    if found.any() {
-                        let mut hits = hit.half(half);
-                        accept::<ANY, f32x8>(&mut hits, found, (t, u, v), || u32x8::splat(*id));
-                        hit.put_half(half, &hits);
-                        any = true;
-                    }
+        if ONE_REGISTER {
+            let limited = RayLanes { t_far: hit.t, ..*ray };
+            if let Some((found, t, u, v)) = aspects.intersect(lane, margin, &limited, Mask16::splat(true)) {
+                any = found.any();
+                if any {
+                    accept::<ANY, f32x16>(hit, found, (t, u, v), || u32x16::splat(*id));
                 }
-                // Whole: a hit that is found again changes nothing.
-                None => {
-                    let every = every.to_bitmask();
-                    self.intersect_carefully::<ANY, f32x16>((lane, *id), ray, every, hit);
-                    return true;
+                return any;
+            }
+        } else {
+            for half in 0..2 {
+                let limited = RayLanes { t_far: hit.t.half(half), ..ray.half(half) };
+                let Some((found, t, u, v)) = aspects.intersect(lane, margin, &limited, Mask8::splat(true)) else {
+                    break;
+                };
+                if found.any() {
+                    any = true;
+                    let mut hits = hit.half(half);
+                    accept::<ANY, f32x8>(&mut hits, found, (t, u, v), || u32x8::splat(*id));
+                    hit.put_half(half, &hits);
+                }
+                if half == 1 {
+                    return any;
                 }
             }
         }
-        any
+        // Whole: a hit that is found again changes nothing.
+        let every = Mask16::splat(true).to_bitmask();
+        self.intersect_carefully::<ANY, f32x16>((lane, *id), ray, every, hit);
+        true
     }
 
     /// The same next to an edge.

@@ -1,5 +1,7 @@
 //! What of a test of triangles does not depend on a ray's direction, and the test itself.
 
+use glam::Vec3;
+
 use super::{LEAST, products};
 use crate::geometry::{RayLanes, aabb};
 use crate::simd::{Bits, LANES, Mask, Real, Vector3, f32x8, vector3};
@@ -19,32 +21,59 @@ pub struct Aspect<R> {
     pub s: Vector3<R>,
     /// s × e₁.
     pub q: Vector3<R>,
-    /// The lower corners of their boxes.
-    pub min: Vector3<R>,
-    /// The upper corners.
-    pub max: Vector3<R>,
+    /// e₂·q, the numerator of t.
+    pub depth: R,
 }
 
-/// An [`Aspect`] in columns, from which lanes are read where they are needed.
+/// Eight triangles as rays from one origin into one octant see them, in columns, from which lanes are read where they
+/// are needed.
 #[derive(Clone, Copy, Debug)]
-pub struct AspectColumns([[[f32; LANES]; 3]; 6]);
+pub struct AspectColumns {
+    /// e₁, e₂, s and q.
+    vectors: [[[f32; LANES]; 3]; 4],
+    depth: [f32; LANES],
+    /// From the origin to the planes of the triangles' boxes that are met first along each axis, and last.
+    slabs: [[[f32; LANES]; 3]; 2],
+}
 
 impl AspectColumns {
-    /// From lanes.
+    /// From lanes, their boxes' (lower, upper) corners, and where the rays point along each axis.
     #[inline]
-    pub fn new(aspect: &Aspect<f32x8>) -> Self {
-        let Aspect { e1, e2, s, q, min, max } = *aspect;
-        Self([e1, e2, s, q, min, max].map(|v| [v.x.to_array(), v.y.to_array(), v.z.to_array()]))
+    pub fn new(
+        aspect: &Aspect<f32x8>,
+        (min, max): (Vector3<f32x8>, Vector3<f32x8>),
+        (org, negative): (Vec3, [bool; 3]),
+    ) -> Self {
+        let Aspect { e1, e2, s, q, depth } = *aspect;
+        let columns = |v: Vector3<f32x8>| [v.x, v.y, v.z].map(f32x8::to_array);
+        let org = Vector3::splat(org);
+        let [mut near, mut far] = [min - org, max - org].map(columns);
+        for axis in 0..3 {
+            if negative[axis] {
+                std::mem::swap(&mut near[axis], &mut far[axis]);
+            }
+        }
+        Self { vectors: [e1, e2, s, q].map(columns), depth: depth.to_array(), slabs: [near, far] }
     }
 
-    /// One of the lanes, in all lanes.
+    /// Rays against the triangle in a lane, by the operations of [`TriangleLanes::intersect_seen`](super::TriangleLanes).
     #[inline(always)]
-    pub fn splat<R: Real>(&self, lane: usize) -> Aspect<R> {
-        let [e1, e2, s, q, min, max] = [0, 1, 2, 3, 4, 5].map(|of: usize| {
-            let [x, y, z] = &self.0[of];
+    pub fn intersect<R: Real>(
+        &self,
+        lane: usize,
+        margin: f32,
+        ray: &RayLanes<R>,
+        active: R::Mask,
+    ) -> Option<(R::Mask, R, R, R)> {
+        let splat = |[x, y, z]: &[[f32; LANES]; 3]| {
             vector3(R::splat(x[lane]), R::splat(y[lane]), R::splat(z[lane]))
-        });
-        Aspect { e1, e2, s, q, min, max }
+        };
+        let [e1, e2, s, q] = self.vectors.each_ref().map(splat);
+        let aspect = Aspect { e1, e2, s, q, depth: R::splat(self.depth[lane]) };
+        aspect.answer(&aspect.test(R::splat(margin), ray, active), ray, || {
+            let [near, far] = self.slabs.each_ref().map(splat);
+            aabb::within_slabs(near, far, ray.rdir)
+        })
     }
 }
 
@@ -57,19 +86,17 @@ pub(super) struct Tested<R: Real> {
     /// The least magnitude of a numerator: negative if not all have one sign.
     pub(super) inside: R,
     det: R,
-    /// That of t.
-    depth: R,
     u: R,
     v: R,
 }
 
 impl<R: Real> Tested<R> {
-    /// (t, u, v). A division, so not before they are wanted.
+    /// (t, u, v), by the numerator of t. A division, so not before they are wanted.
     #[inline(always)]
-    pub(super) fn quotients(&self) -> (R, R, R) {
+    pub(super) fn quotients(&self, depth: R) -> (R, R, R) {
         let inverse = R::one() / self.det;
         // A zero added: rays from +0 and from −0 see the same aspect, and have the same t.
-        (self.depth * inverse + R::zero(), self.u * inverse, self.v * inverse)
+        (depth * inverse + R::zero(), self.u * inverse, self.v * inverse)
     }
 }
 
@@ -105,7 +132,7 @@ impl<R: Real> Aspect<R> {
         let w = det - u - v;
         let inside = u.min(v).min(w).max(-u.max(v).max(w));
         let near = (-margin).le(inside) & active;
-        Tested { near, certain: margin.lt(inside), inside, det, depth: e2.dot(q), u, v }
+        Tested { near, certain: margin.lt(inside), inside, det, u, v }
     }
 
     /// Lanes whose plane is certainly crossed before the ray begins, if their numerators are certain.
@@ -115,30 +142,38 @@ impl<R: Real> Aspect<R> {
     #[inline(always)]
     pub(super) fn behind(&self, edges: R, tested: &Tested<R>, ray: &RayLanes<R>) -> R::Mask {
         let sign = tested.det.to_bits() & R::Bits::splat(1 << 31);
-        let depth = R::from_bits(tested.depth.to_bits() ^ sign);
+        let depth = R::from_bits(self.depth.to_bits() ^ sign);
         let room = self.size(edges) * (edges * R::splat(DEPTH_ULPS)) + R::splat(LEAST);
         // A sum that overflowed says nothing of its sign.
         depth.lt(-room) & R::splat(f32::MIN).le(depth) & R::zero().le(ray.t_near)
     }
 
-    /// What is to be said of lanes, if it is certain.
+    /// What is to be said of lanes, if it is certain; `slabs` are those of their boxes.
     #[inline(always)]
-    pub(super) fn answer(&self, tested: Tested<R>, ray: &RayLanes<R>) -> Option<(R::Mask, R, R, R)> {
-        let Tested { near, certain, .. } = tested;
+    pub(super) fn answer(
+        &self,
+        tested: &Tested<R>,
+        ray: &RayLanes<R>,
+        slabs: impl FnOnce() -> (R, R),
+    ) -> Option<(R::Mask, R, R, R)> {
+        let &Tested { near, certain, .. } = tested;
         let nothing = R::zero();
         if near.none() {
             return Some((near, nothing, nothing, nothing));
         }
         let doubtful = (near & !certain).any();
-        (!doubtful).then(|| self.within(ray, near, tested.quotients()))
+        (!doubtful).then(|| within(ray, near, tested.quotients(self.depth), slabs()))
     }
+}
 
-    /// Hits that lie in the triangles' boxes and in the rays' ranges.
-    #[inline(always)]
-    pub(super) fn within(&self, ray: &RayLanes<R>, hit: R::Mask, (t, u, v): (R, R, R)) -> (R::Mask, R, R, R) {
-        let all = (R::splat(f32::NEG_INFINITY), R::splat(f32::INFINITY));
-        let (low, high) = aabb::interval((self.min, self.max), (ray.org, ray.rdir), all);
-        let t = high.min(low.max(t));
-        (hit & low.le(high) & ray.t_near.lt(t) & t.le(ray.t_far), t, u, v)
-    }
+/// Hits that lie in the triangles' boxes, whose slabs are given, and in the rays' ranges.
+#[inline(always)]
+pub(super) fn within<R: Real>(
+    ray: &RayLanes<R>,
+    hit: R::Mask,
+    (t, u, v): (R, R, R),
+    (low, high): (R, R),
+) -> (R::Mask, R, R, R) {
+    let t = high.min(low.max(t));
+    (hit & low.le(high) & ray.t_near.lt(t) & t.le(ray.t_far), t, u, v)
 }
