@@ -37,6 +37,20 @@ pub(super) struct Distances {
     pub(super) ahead: Mask8,
 }
 
+impl Distances {
+    /// The rays from the same origin that enter a child before `t_far`: as [`Beam::rays`]; lanes are rays.
+    #[inline]
+    pub(super) fn entered<R: Real>(&self, place: usize, ray: &RayLanes<R>, t_far: R) -> R::Mask {
+        let of = |[x, y, z]: &[[f32; LANES]; 3]| {
+            vector3(R::splat(x[place]), R::splat(y[place]), R::splat(z[place]))
+        };
+        let near = of(&self.near) * ray.rdir;
+        let far = (of(&self.far) * ray.rdir).scale(R::splat(aabb::WIDEN));
+        let low = near.z.max(near.y.max(near.x.max(ray.t_near)));
+        low.le(far.z.min(far.y.min(far.x.min(t_far))))
+    }
+}
+
 /// Least and greatest of a quantity, in lanes.
 type Range<R> = (R, R);
 
@@ -216,22 +230,6 @@ impl<R: Real> Beam<R> {
         let (near, far) = (vector3(x.0, y.0, z.0), vector3(x.1, y.1, z.1));
         let near = (near - ray.org) * ray.rdir;
         let far = ((far - ray.org) * ray.rdir).scale(P::splat(aabb::WIDEN));
-        let low = near.z.max(near.y.max(near.x.max(ray.t_near)));
-        low.le(far.z.min(far.y.min(far.x.min(t_far))))
-    }
-
-    /// The same for rays from the one origin from which distances are taken.
-    #[inline]
-    pub(super) fn rays_ahead<P: Real>(
-        distances: &Distances,
-        place: usize,
-        ray: &RayLanes<P>,
-        t_far: P,
-    ) -> P::Mask {
-        let of = |planes: &[[f32; LANES]; 3]| planes.map(|planes| P::splat(planes[place]));
-        let ([x, y, z], [far_x, far_y, far_z]) = (of(&distances.near), of(&distances.far));
-        let near = vector3(x, y, z) * ray.rdir;
-        let far = (vector3(far_x, far_y, far_z) * ray.rdir).scale(P::splat(aabb::WIDEN));
         let low = near.z.max(near.y.max(near.x.max(ray.t_near)));
         low.le(far.z.min(far.y.min(far.x.min(t_far))))
     }

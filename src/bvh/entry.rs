@@ -7,7 +7,7 @@
 use glam::Vec3;
 
 use super::{Bvh, Child, Kind, Node};
-use crate::geometry::{Aabb, Rayx16};
+use crate::geometry::{Aabb, Rayx16, aabb};
 use crate::simd::{Mask, Mask8, Mask16, Real, Vec3x16, f32x8, f32x16};
 
 /// Ulps of a coordinate by which the box around segments is wider than they are, against the rounding of
@@ -42,6 +42,20 @@ impl Segments {
         let bounds = Aabb { min: min - margin, max: max + margin };
         (bounds.min.is_finite() && bounds.max.is_finite()).then_some(bounds)
     }
+}
+
+/// Which of a node's children each of sixteen rays enters: of each child, the rays.
+#[inline]
+pub(super) fn enters(node: &Node, rays: &Rayx16) -> [u32; 8] {
+    std::array::from_fn(|place| match node.children[place] {
+        Child::ABSENT => 0,
+        _ => {
+            let bounds = node.child_bounds(place);
+            let corners = (Vec3x16::splat(bounds.min), Vec3x16::splat(bounds.max));
+            let (low, high) = aabb::interval(corners, (rays.org, rays.rdir), (rays.t_near, rays.t_far));
+            low.le(high).to_bitmask()
+        }
+    })
 }
 
 impl Bvh {

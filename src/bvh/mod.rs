@@ -32,6 +32,8 @@ pub use stream::{Stream, Tracer, Way};
 pub use validate::{Defect, Shape};
 use wave::Wave;
 
+use std::hint::select_unpredictable;
+
 use glam::Vec3;
 
 use crate::geometry::{Hit, Pencils, PrimitiveId, Ray, Rayx8, Rayx16};
@@ -209,7 +211,7 @@ impl Bvh {
     #[inline]
     fn ask_for<L: Leaves>(&self, child: Child, leaves: &L) {
         let node = self.nodes.as_ptr().wrapping_add(child.index()).cast();
-        let address = if child.is_leaf_or_absent() { leaves.address(child.slot()) } else { node };
+        let address = select_unpredictable(child.is_leaf_or_absent(), leaves.address(child.slot()), node);
         prefetch::<5>(address);
     }
 

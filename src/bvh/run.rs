@@ -4,7 +4,7 @@ use super::{
     Bvh, Leaves, Node, Stream, Tally, Way,
     bundle::{BUNDLE, Grouping},
     cost::Cost,
-    entry::Segments,
+    entry::{Segments, enters},
     extent::{Extent, diagonal},
     habit::{Coherence, Habit},
     occluder::Occluder,
@@ -126,6 +126,20 @@ impl Run {
         segments.bounds(bvh.reach()).map(|bounds| bvh.entry(bounds))
     }
 
+    /// Which places hold rays that enter a child of a node, and which children those are, as bits.
+    pub(super) fn enter(&self, node: &Node, entered: &mut [u8; RUN]) -> u64 {
+        let mut any = 0;
+        for (bundle, entered) in (0..self.bundles()).zip(entered.chunks_mut(BUNDLE)) {
+            let rays = enters(node, &self.bundles[bundle]);
+            for (half, entered) in entered.chunks_mut(LANES).enumerate() {
+                let rows = rays.map(|rays| (rays >> (half * LANES)) as u8);
+                entered.copy_from_slice(&turned(u64::from_le_bytes(rows)).to_le_bytes());
+            }
+            any |= u64::from(rays.iter().fold(0, |any, rays| any | rays)) << (bundle * BUNDLE);
+        }
+        any
+    }
+
     /// Bounds on the rays, where they may be wanted: for a tile.
     fn bound(&mut self) {
         if self.is_whole() {
@@ -166,6 +180,15 @@ impl Run {
         let sides = [(lx, -hx), (ly, -hy), (lz, -hz)];
         (diagonal(sides), sides.iter().all(|&(low, high)| low >= 0.0 || high <= 0.0))
     }
+}
+
+/// A matrix of eight by eight bits, a byte a row, turned over its diagonal: squares of one, two and four change places.
+fn turned(mut bits: u64) -> u64 {
+    for (by, upper) in [(7, 0x00aa_00aa_00aa_00aa), (14, 0x0000_cccc_0000_cccc), (28, 0x0000_0000_f0f0_f0f0)] {
+        let differ = (bits ^ bits >> by) & upper;
+        bits ^= differ ^ differ << by;
+    }
+    bits
 }
 
 /// The runs of a stream, one after the other, and what has been learnt from those before.

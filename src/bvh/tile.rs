@@ -6,14 +6,14 @@
 //! a bundle would take sixteen times is so taken once.
 
 use super::{
-    Bvh, Child, Hitx16, Kind, Leaves, Node, Stream, Tally, Traversal,
+    Bvh, Child, Hitx16, Kind, Leaves, Stream, Tally, Traversal,
     beam::Beam,
     bundle::BUNDLE,
     cost::Cost,
     stream::{Ahead, TILE},
 };
 use crate::geometry::Rayx16;
-use crate::simd::{Mask, Real, f32x16};
+use crate::simd::{Mask, Mask16, Real, f32x16};
 
 /// Up to so many bundles, each tests a leaf's box with its rays.
 const FEW: u32 = 4;
@@ -71,7 +71,13 @@ impl Bvh {
                         let child = node.children[place];
                         // Planes are tested once for all bundles: no box is worth it for more than a few.
                         if child.is_leaf() && (pencils.is_none() || mask.count_ones() <= FEW) {
-                            mask = rays_enter(node, place, beams, rays, hits, mask);
+                            mask = those_with(mask, |bundle| {
+                                let (rays, t_far) = (rays[bundle], hits[bundle].t);
+                                match pencils {
+                                    Some(_) => distances.entered(place, rays, t_far),
+                                    None => beams.rays(node, place, rays, t_far),
+                                }
+                            });
                         }
                         if mask != 0 {
                             self.ask_for(child, leaves);
@@ -112,23 +118,14 @@ impl Bvh {
     }
 }
 
-/// Which of the bundles in `mask` have a ray that enters a child's box.
-#[inline]
-fn rays_enter(
-    node: &Node,
-    place: usize,
-    beams: &Beam<f32x16>,
-    rays: &[&Rayx16; TILE],
-    hits: &[Hitx16; TILE],
-    mask: u32,
-) -> u32 {
-    let mut entered = 0;
-    let mut left = mask;
+/// Which of the bundles in `mask` have a ray that enters.
+#[inline(always)]
+fn those_with(mask: u32, enters: impl Fn(usize) -> Mask16) -> u32 {
+    let (mut entered, mut left) = (0, mask);
     while left != 0 {
-        let bundle = left.trailing_zeros() as usize;
+        let bundle = left.trailing_zeros() as usize % TILE;
         left &= left - 1;
-        let enter = beams.rays(node, place, rays[bundle], hits[bundle].t);
-        entered |= u32::from(enter.any()) << bundle;
+        entered |= u32::from(enters(bundle).any()) << bundle;
     }
     entered
 }

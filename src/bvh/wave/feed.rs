@@ -2,7 +2,7 @@
 
 use super::slot::Slot;
 use crate::bvh::{
-    Bvh, Child, Leaves, Node, Stream, Tally, Way,
+    Bvh, Leaves, Node, Stream, Tally, Way,
     cost::Cost,
     run::{PACKETS, RUN, Runs},
     stream::Ahead,
@@ -117,6 +117,8 @@ pub(super) struct Feed {
     waiting: u64,
     /// Where occlusion rays of the run start, if not at the root.
     entry: Option<Node>,
+    /// The children of it that each ray enters, as bits.
+    entered: [u8; RUN],
     /// Rays that were answered at once since this was last asked, and the [kinds](Runs::kind) of all.
     answered: u32,
     kinds: u32,
@@ -130,6 +132,7 @@ impl Default for Feed {
             ready: Box::new([[Ready::NOTHING; LANES]; PACKETS]),
             waiting: 0,
             entry: None,
+            entered: [0; RUN],
             answered: 0,
             kinds: 0,
             kind: 0,
@@ -176,7 +179,7 @@ impl Feed {
         self.waiting &= self.waiting - 1;
         let ray = &self.ready[next / LANES][next % LANES];
         match &self.entry {
-            Some(node) if ANY => slot.start_at::<ANY>(ray, node),
+            Some(node) if ANY => slot.start_below(ray, node, self.entered[next]),
             _ => slot.start(ray),
         }
         true
@@ -188,11 +191,16 @@ impl Feed {
         let run = runs.take();
         Ahead::new(stream, run.first, RUN).finish();
         self.entry = if ANY { run.entry(bvh) } else { None };
-        let nowhere = self.entry.as_ref().is_some_and(|node| node.children[0] == Child::ABSENT);
-        if !nowhere && !bvh.nodes.is_empty() {
+        if !bvh.nodes.is_empty() {
             let reach = bvh.reach();
-            self.waiting = run.active;
+            self.waiting = match &self.entry {
+                Some(node) if ANY => run.active & run.enter(node, &mut self.entered),
+                _ => run.active,
+            };
             for packet in 0..run.packets() {
+                if self.waiting >> (packet * LANES) & 0xff == 0 {
+                    continue;
+                }
                 let index = run.numbers(packet);
                 Ready::packet(&run.packet(packet), index, reach, &mut self.ready[packet]);
             }

@@ -50,11 +50,13 @@ impl Slot {
         self.top = 1;
     }
 
-    /// Takes a ray to the children of a node that is not the tree's.
+    /// Takes an occlusion ray to those of a node's children that are in a set, which is not empty.
     #[inline]
-    pub(super) fn start_at<const ANY: bool>(&mut self, ray: &Ready, node: &Node) {
+    pub(super) fn start_below(&mut self, ray: &Ready, node: &Node, entered: u8) {
         self.start(ray);
-        self.step::<ANY>(node);
+        self.children[1..9].copy_from_slice(&compress(node.words(), entered).to_array());
+        self.top = entered.count_ones();
+        self.child = Child::from_word(self.children[self.top as usize]);
     }
 
     /// Tests the boxes of a node and moves to the nearest child, or to what waits.
