@@ -184,7 +184,8 @@ impl Run {
 
 /// A matrix of eight by eight bits, a byte a row, turned over its diagonal: squares of one, two and four change places.
 fn turned(mut bits: u64) -> u64 {
-    for (by, upper) in [(7, 0x00aa_00aa_00aa_00aa), (14, 0x0000_cccc_0000_cccc), (28, 0x0000_0000_f0f0_f0f0)] {
+    for (by, upper) in [(7, 0x00aa_00aa_00aa_00aa), (14, 0x0000_cccc_0000_cccc), (28, 0x0000_0000_f0f0_f0f0)]
+    {
         let differ = (bits ^ bits >> by) & upper;
         bits ^= differ ^ differ << by;
     }

@@ -148,7 +148,8 @@ mod tests {
             }
             let [v0, v1, v2] = [triangle.v0, triangle.v1, triangle.v2].map(Vec3x8::splat);
             let lanes = TriangleLanes { v0, v1, v2, edges: f32x8::splat(triangle.edges()) };
-            let pencils = Pencils::new(org, [false; 3], Vec3x8::from_fn(|i| low[i]), Vec3x8::from_fn(|i| high[i]));
+            let pencils =
+                Pencils::new(org, [false; 3], Vec3x8::from_fn(|i| low[i]), Vec3x8::from_fn(|i| high[i]));
             let meet = pencils.meet(&lanes.aspect(Vec3x8::splat(org)).edge_planes(), 5).to_bitmask();
             for (lane, hit) in hit.into_iter().enumerate() {
                 hits += u32::from(hit);

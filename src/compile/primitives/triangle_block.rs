@@ -6,7 +6,9 @@ use super::accept;
 use crate::bvh::{BLOCK, HitLanes, Hitx16};
 use crate::compile::{corners::Corners, surfaces::Surfaces};
 use crate::geometry::{Aspect, AspectColumns, RayLanes, Rayx16, Triangle, TriangleLanes};
-use crate::simd::{Bits, Mask, Mask8, Mask16, ONE_REGISTER, Real, Vector3, f32x8, f32x16, u32x8, u32x16, vector3};
+use crate::simd::{
+    Bits, Mask, Mask8, Mask16, ONE_REGISTER, Real, Vector3, f32x8, f32x16, u32x8, u32x16, vector3,
+};
 
 /// Memory is asked for the vertices of triangles so many blocks on, and for their numbers twice as far.
 const AHEAD: usize = 4;
@@ -103,16 +105,14 @@ impl TriangleBlock {
         if ONE_REGISTER {
             let limited = RayLanes { t_far: hit.t, ..*ray };
             if let Some((found, t, u, v)) = aspects.intersect(lane, margin, &limited, Mask16::splat(true)) {
-                any = found.any();
-                if any {
-                    accept::<ANY, f32x16>(hit, found, (t, u, v), || u32x16::splat(*id));
-                }
-                return any;
+                accept::<ANY, f32x16>(hit, found, (t, u, v), || u32x16::splat(*id));
+                return found.any();
             }
         } else {
             for half in 0..2 {
                 let limited = RayLanes { t_far: hit.t.half(half), ..ray.half(half) };
-                let Some((found, t, u, v)) = aspects.intersect(lane, margin, &limited, Mask8::splat(true)) else {
+                let Some((found, t, u, v)) = aspects.intersect(lane, margin, &limited, Mask8::splat(true))
+                else {
                     break;
                 };
                 if found.any() {

@@ -65,15 +65,17 @@ impl AspectColumns {
         ray: &RayLanes<R>,
         active: R::Mask,
     ) -> Option<(R::Mask, R, R, R)> {
-        let splat = |[x, y, z]: &[[f32; LANES]; 3]| {
-            vector3(R::splat(x[lane]), R::splat(y[lane]), R::splat(z[lane]))
-        };
+        let splat =
+            |[x, y, z]: &[[f32; LANES]; 3]| vector3(R::splat(x[lane]), R::splat(y[lane]), R::splat(z[lane]));
         let [e1, e2, s, q] = self.vectors.each_ref().map(splat);
         let aspect = Aspect { e1, e2, s, q, depth: R::splat(self.depth[lane]) };
-        aspect.answer(&aspect.test(R::splat(margin), ray, active), ray, || {
-            let [near, far] = self.slabs.each_ref().map(splat);
-            aabb::within_slabs(near, far, ray.rdir)
-        })
+        let tested = aspect.test(R::splat(margin), ray, active);
+        // Whatever may be a hit is worked out to its end: a branch would be guessed wrong too often.
+        let [near, far] = self.slabs.each_ref().map(splat);
+        let slabs = aabb::within_slabs(near, far, ray.rdir);
+        let found = within(ray, tested.near, tested.quotients(aspect.depth), slabs);
+        let doubtful = (tested.near & !tested.certain).any();
+        (!doubtful).then_some(found)
     }
 }
 
