@@ -118,7 +118,7 @@ impl Beam<f32x16> {
         let origin = |axis: usize| {
             let first = f32x16::splat(self.near_org[axis].lane(0));
             let same = first.equal(self.near_org[axis]) & first.equal(self.far_org[axis]);
-            (!same).none().then(|| first.lane(0))
+            same.all().then(|| first.lane(0))
         };
         let org = glam::vec3(origin(0)?, origin(1)?, origin(2)?);
         let one = f32x16::splat(1.0);
@@ -183,11 +183,11 @@ impl<R: Real> Beam<R> {
         };
         for axis in 0..3 {
             let ((org_low, org_high), (low, high)) = (org[axis], rdir[axis]);
-            if (!high.lt(R::zero())).none() {
+            if high.lt(R::zero()).all() {
                 beam.negative[axis] = true;
                 (beam.near_org[axis], beam.far_org[axis]) = (org_low, org_high);
                 (beam.rdir_least[axis], beam.rdir_greatest[axis]) = (high, low);
-            } else if (!low.ge(R::zero())).none() {
+            } else if low.ge(R::zero()).all() {
                 (beam.near_org[axis], beam.far_org[axis]) = (org_high, org_low);
                 (beam.rdir_least[axis], beam.rdir_greatest[axis]) = (low, high);
             } else {
@@ -267,20 +267,25 @@ mod tests {
         }))
     }
 
+    fn boxes(random: &mut Random) -> ([Aabb; 8], Node) {
+        let boxes = std::array::from_fn(|_| {
+            let (centre, size) = (random.vector(), random.vector().abs());
+            Aabb { min: centre - size, max: centre + size }
+        });
+        let mut node = Node::EMPTY;
+        for (place, bounds) in boxes.iter().enumerate() {
+            node.set(place, *bounds, Child::leaf(place as u32, 1));
+        }
+        (boxes, node)
+    }
+
     /// Corners are where slabs leave no room for rounding.
     #[test]
     fn a_beam_enters_what_a_ray_of_it_enters() {
         let mut random = Random::new(3);
         let (mut beams, mut entered) = (0, 0);
         for i in 0..20_000 {
-            let boxes: [Aabb; 8] = std::array::from_fn(|_| {
-                let (centre, size) = (random.vector(), random.vector().abs());
-                Aabb { min: centre - size, max: centre + size }
-            });
-            let mut node = Node::EMPTY;
-            for (place, bounds) in boxes.iter().enumerate() {
-                node.set(place, *bounds, Child::leaf(place as u32, 1));
-            }
+            let (boxes, node) = boxes(&mut random);
             let rays = aimed(&mut random, &boxes, i % 2 == 0);
             let active = Mask8::first(1 + random.below(8) as usize);
             let Some(beam) = Beam::of_packet(&rays, active) else { continue };
@@ -295,10 +300,59 @@ mod tests {
                     let (near, _) = bounds.interval(&rays.lane(lane));
                     assert!(nearest.lane(place) <= near, "case {i}: child {place} is said to be farther");
                 }
-                let all = beam.beams(&node, place, t_far);
-                assert!(!exact.any() || all.all(), "case {i}: a ray enters child {place}, its beam does not");
             }
         }
         assert!(beams > 1000 && entered > 10_000, "{beams} beams, {entered} boxes entered");
+    }
+
+    /// Sixteen beams, each around a ray and the one after it, and the one beam around all of them.
+    #[test]
+    fn beams_in_lanes_enter_what_their_rays_enter() {
+        let mut random = Random::new(4);
+        let (mut entered, mut ahead) = (0, 0);
+        for i in 0..40_000 {
+            let (boxes, node) = boxes(&mut random);
+            let one_origin = i % 2 == 0;
+            let rays = aimed(&mut random, &boxes, one_origin);
+            let range = |x: f32x8| {
+                let next = |i: usize| x.lane((i + 1) % LANES);
+                let of = |pick: fn(f32, f32) -> f32| f32x16::from_fn(|i| pick(x.lane(i % LANES), next(i)));
+                (of(Real::min), of(Real::max))
+            };
+            let (org, rdir) = (rays.org, rays.rdir);
+            let org = [org.x, org.y, org.z].map(range);
+            let rdir = [rdir.x, rdir.y, rdir.z].map(range);
+            let Some(beams) = Beam::new(org, rdir, f32x16::zero()) else { continue };
+            let t_far = [f32::INFINITY, 1.0][i / 2 % 2];
+            let all = beams.around();
+            let (children, nearest) = all.children(&node, t_far);
+            let (same, same_nearest, distances) = all.children_ahead(&node, t_far);
+            assert_eq!(same.to_bitmask(), children.to_bitmask());
+            assert_eq!(same_nearest.to_array(), nearest.to_array());
+            for place in 0..LANES {
+                let exact = all.rays(&node, place, &rays, f32x8::splat(t_far));
+                let lanes = beams.beams(&node, place, f32x16::splat(t_far)).to_bitmask();
+                for lane in (0..LANES).filter(|&lane| exact.lane(lane)) {
+                    entered += 1;
+                    let around = 1 << lane | 1 << ((lane + LANES - 1) % LANES);
+                    assert_eq!(
+                        lanes & (around | around << 8),
+                        around | around << 8,
+                        "case {i}, child {place}"
+                    );
+                    assert!(children.lane(place), "case {i}: a ray enters child {place}");
+                }
+                if one_origin {
+                    let known = distances.entered(place, &rays, f32x8::splat(t_far));
+                    assert_eq!(known.to_bitmask(), exact.to_bitmask(), "case {i}, child {place}");
+                    if distances.ahead.lane(place) {
+                        ahead += 1;
+                        let known = beams.beams_ahead(&distances, place, f32x16::splat(t_far));
+                        assert_eq!(known.to_bitmask(), lanes, "case {i}, child {place}");
+                    }
+                }
+            }
+        }
+        assert!(entered > 10_000 && ahead > 1000, "{entered} boxes entered, {ahead} ahead");
     }
 }

@@ -44,10 +44,11 @@ impl Segments {
     }
 }
 
-/// Which of a node's children each of sixteen rays enters: of each child, the rays.
+/// Which of a node's children each of sixteen rays enters, as bits, and which rays enter any: sixteen rays a box, where a
+/// ray on its own would take a step.
 #[inline]
-pub(super) fn enters(node: &Node, rays: &Rayx16) -> [u32; 8] {
-    std::array::from_fn(|place| match node.children[place] {
+pub(super) fn children_entered(node: &Node, rays: &Rayx16) -> ([u8; 16], u32) {
+    let of_child: [u32; 8] = std::array::from_fn(|place| match node.children[place] {
         Child::ABSENT => 0,
         _ => {
             let bounds = node.child_bounds(place);
@@ -55,7 +56,24 @@ pub(super) fn enters(node: &Node, rays: &Rayx16) -> [u32; 8] {
             let (low, high) = aabb::interval(corners, (rays.org, rays.rdir), (rays.t_near, rays.t_far));
             low.le(high).to_bitmask()
         }
-    })
+    });
+    let mut of_ray = [0; 16];
+    for (half, of_ray) in of_ray.as_chunks_mut::<8>().0.iter_mut().enumerate() {
+        *of_ray = turned(of_child.map(|rays| (rays >> (half * 8)) as u8));
+    }
+    (of_ray, of_child.into_iter().fold(0, |any, rays| any | rays))
+}
+
+/// A matrix of bits, turned over its diagonal: bit i of byte k is bit k of byte i. Squares of one, two and four bits change
+/// places.
+fn turned(rows: [u8; 8]) -> [u8; 8] {
+    let mut bits = u64::from_le_bytes(rows);
+    for (by, upper) in [(7, 0x00aa_00aa_00aa_00aa), (14, 0x0000_cccc_0000_cccc), (28, 0x0000_0000_f0f0_f0f0)]
+    {
+        let differ = (bits ^ bits >> by) & upper;
+        bits ^= differ ^ differ << by;
+    }
+    bits.to_le_bytes()
 }
 
 impl Bvh {
@@ -103,5 +121,64 @@ impl Node {
             meets = meets & low.le(f32x8::splat(bounds.max[axis])) & f32x8::splat(bounds.min[axis]).le(high);
         }
         meets.to_bitmask()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Ray, RayLanes, seeds::Random};
+    use crate::simd::{Real, Vector3};
+
+    #[test]
+    fn bits_change_rows_for_columns() {
+        let rows = [0b1000_0001, 0, 0b0110_0000, 0xff, 1, 2, 3, 0b1010_1010];
+        let columns = turned(rows);
+        for row in 0..8 {
+            for column in 0..8 {
+                assert_eq!(rows[row] >> column & 1, columns[column] >> row & 1, "row {row}, column {column}");
+            }
+        }
+    }
+
+    #[test]
+    fn rays_enter_the_children_whose_boxes_they_enter() {
+        let mut random = Random::new(43);
+        let mut entered = 0;
+        for count in (0..=8).cycle().take(900) {
+            let mut node = Node::EMPTY;
+            for place in 0..count {
+                let (centre, size) = (random.vector(), random.vector().abs());
+                node.set(
+                    place,
+                    Aabb { min: centre - size, max: centre + size },
+                    Child::leaf(place as u32, 1),
+                );
+            }
+            let rays: [Ray; 16] = std::array::from_fn(|_| {
+                Ray::new(random.vector(), random.vector(), 0.0, 1.0 + random.signed())
+            });
+            let lanes = RayLanes::new(
+                Vector3::from_fn(|i| rays[i].org),
+                Vector3::from_fn(|i| rays[i].dir),
+                f32x16::from_fn(|i| rays[i].t_near),
+                f32x16::from_fn(|i| rays[i].t_far),
+            );
+            let (children, any) = children_entered(&node, &lanes);
+            for (i, ray) in rays.iter().enumerate() {
+                let enters = |place: &usize| {
+                    let (low, high) = node.child_bounds(*place).interval(ray);
+                    low <= high
+                };
+                let expected = (0..count).filter(enters).fold(0, |set, place| set | 1 << place);
+                assert_eq!(
+                    (children[i], any >> i & 1 != 0),
+                    (expected, expected != 0),
+                    "ray {i} of {count} boxes"
+                );
+                entered += expected.count_ones();
+            }
+        }
+        assert!(entered > 2000, "{entered}");
     }
 }

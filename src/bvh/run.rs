@@ -4,7 +4,7 @@ use super::{
     Bvh, Leaves, Node, Stream, Tally, Way,
     bundle::{BUNDLE, Grouping},
     cost::Cost,
-    entry::{Segments, enters},
+    entry::{Segments, children_entered},
     extent::{Extent, diagonal},
     habit::{Coherence, Habit},
     occluder::Occluder,
@@ -126,16 +126,13 @@ impl Run {
         segments.bounds(bvh.reach()).map(|bounds| bvh.entry(bounds))
     }
 
-    /// Which places hold rays that enter a child of a node, and which children those are, as bits.
+    /// Which children of a node each ray enters, as bits, and which places hold rays that enter any.
     pub(super) fn enter(&self, node: &Node, entered: &mut [u8; RUN]) -> u64 {
         let mut any = 0;
-        for (bundle, entered) in (0..self.bundles()).zip(entered.chunks_mut(BUNDLE)) {
-            let rays = enters(node, &self.bundles[bundle]);
-            for (half, entered) in entered.chunks_mut(LANES).enumerate() {
-                let rows = rays.map(|rays| (rays >> (half * LANES)) as u8);
-                entered.copy_from_slice(&turned(u64::from_le_bytes(rows)).to_le_bytes());
-            }
-            any |= u64::from(rays.iter().fold(0, |any, rays| any | rays)) << (bundle * BUNDLE);
+        for (bundle, entered) in (0..self.bundles()).zip(entered.as_chunks_mut().0) {
+            let rays;
+            (*entered, rays) = children_entered(node, &self.bundles[bundle]);
+            any |= u64::from(rays) << (bundle * BUNDLE);
         }
         any
     }
@@ -180,16 +177,6 @@ impl Run {
         let sides = [(lx, -hx), (ly, -hy), (lz, -hz)];
         (diagonal(sides), sides.iter().all(|&(low, high)| low >= 0.0 || high <= 0.0))
     }
-}
-
-/// A matrix of eight by eight bits, a byte a row, turned over its diagonal: squares of one, two and four change places.
-fn turned(mut bits: u64) -> u64 {
-    for (by, upper) in [(7, 0x00aa_00aa_00aa_00aa), (14, 0x0000_cccc_0000_cccc), (28, 0x0000_0000_f0f0_f0f0)]
-    {
-        let differ = (bits ^ bits >> by) & upper;
-        bits ^= differ ^ differ << by;
-    }
-    bits
 }
 
 /// The runs of a stream, one after the other, and what has been learnt from those before.

@@ -116,7 +116,7 @@ mod tests {
     use super::*;
     use crate::simd::Mask;
 
-    /// Eight pencils around eight rays each, from one origin, towards the edges of a triangle.
+    /// Sixteen pencils around eight rays each, from one origin, towards the edges of a triangle.
     #[test]
     fn no_ray_that_hits_is_culled() {
         let mut random = Random::new(29);
@@ -128,10 +128,10 @@ mod tests {
             let [v0, v1, v2, org] = std::array::from_fn(|_| point() * scale);
             let triangle = Triangle::new(v0, v1, v2);
             let spread = [0.0, 1e-6, 1e-2, 0.5][round % 4];
-            let mut low = [Vec3::INFINITY; 8];
-            let mut high = [Vec3::NEG_INFINITY; 8];
-            let mut hit = [false; 8];
-            for lane in 0..8 {
+            let mut low = [Vec3::INFINITY; 16];
+            let mut high = [Vec3::NEG_INFINITY; 16];
+            let mut hit = [false; 16];
+            for lane in 0..16 {
                 // Around a corner, a point of an edge, the inside or the outside.
                 let (u, v) = [(0.0, 0.0), (0.5, 0.5), (0.3, 0.3), (0.7, 0.0), (-0.4, 0.2), (0.9, 0.8)]
                     [random.below(6) as usize];
@@ -149,7 +149,7 @@ mod tests {
             let [v0, v1, v2] = [triangle.v0, triangle.v1, triangle.v2].map(Vec3x8::splat);
             let lanes = TriangleLanes { v0, v1, v2, edges: f32x8::splat(triangle.edges()) };
             let pencils =
-                Pencils::new(org, [false; 3], Vec3x8::from_fn(|i| low[i]), Vec3x8::from_fn(|i| high[i]));
+                Pencils::new(org, [false; 3], Vec3x16::from_fn(|i| low[i]), Vec3x16::from_fn(|i| high[i]));
             let meet = pencils.meet(&lanes.aspect(Vec3x8::splat(org)).edge_planes(), 5).to_bitmask();
             for (lane, hit) in hit.into_iter().enumerate() {
                 hits += u32::from(hit);
@@ -182,7 +182,7 @@ mod tests {
                     let ray = Ray::new(org, dir, f32::NEG_INFINITY, f32::INFINITY);
                     if dir != Vec3::ZERO && triangle.intersect(&ray).is_some() {
                         hits += 1;
-                        let pencils = Pencils::new(org, Vec3x8::splat(dir), Vec3x8::splat(dir));
+                        let pencils = Pencils::new(org, [false; 3], Vec3x16::splat(dir), Vec3x16::splat(dir));
                         assert!(pencils.meet(&planes, 3).all(), "{triangle:?} from {org} along {dir}");
                     }
                 }

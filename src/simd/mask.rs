@@ -38,12 +38,6 @@ impl Mask8 {
         Self::from_bitmask((0..8).fold(0, |bits, lane| bits | u32::from(lanes[lane]) << lane))
     }
 
-    /// Are all lanes true?
-    #[inline]
-    pub fn all(self) -> bool {
-        self.to_bitmask() == 0xff
-    }
-
     /// Lane `i`.
     #[inline]
     pub fn lane(self, i: usize) -> bool {

@@ -26,6 +26,12 @@ pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + No
         !self.any()
     }
 
+    /// Are all lanes true?
+    #[inline]
+    fn all(self) -> bool {
+        (!self).none()
+    }
+
     /// Lanes that are true.
     #[inline]
     fn count(self) -> u32 {

@@ -16,7 +16,7 @@ use super::{
     binary::{Binary, Packed, Run},
     reference::Names,
 };
-use crate::simd::{Bits, Real, f32x8, u32x8};
+use crate::simd::{Bits, Mask, Real, f32x8, u32x8};
 
 /// Cost of testing a node's eight boxes, of going to a leaf and testing its block, and what each primitive there
 /// adds: nothing in a wave, whose lanes are the block's, and all of it in a packet. Found by trying: with a leaf
