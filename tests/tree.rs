@@ -129,6 +129,17 @@ fn coordinates_of_all_sizes_make_sound_trees() {
     }
 }
 
+/// Areas of such boxes are finite, and their sums are not.
+#[test]
+fn costs_that_overflow_make_sound_trees() {
+    let mut random = Random(7);
+    for (count, scale) in [(60, 9.9e17), (100, 9.9e17), (2000, 9.9e17), (20_000, 3e17), (20_000, 3e16)] {
+        let mut corner = || (random.vector() * 2.0 - 1.0) * scale;
+        let boxes: Vec<_> = (0..count).map(|_| Aabb::of_points([corner(), corner()])).collect();
+        sound(&boxes, |_| 0);
+    }
+}
+
 #[test]
 fn distances_that_double_do_not_make_deep_trees() {
     // Each split by bins would cut off the last few: geometric series are the worst case of SAH.

@@ -121,6 +121,23 @@ mod tests {
         assert!((100..200).contains(&alone), "{alone}");
     }
 
+    /// Twice as often would cost twice as much: by the square, all tries together cost the less the dearer they are.
+    #[test]
+    fn a_way_that_is_dear_is_hardly_ever_tried() {
+        let mut habit = Habit::default();
+        let mut alone = 0;
+        for _ in 0..10_240 {
+            if habit.choose_together(Coherence::Coherent) {
+                habit.learn_together(100.0);
+            } else {
+                alone += 1;
+                habit.learn_alone(400.0);
+            }
+        }
+        // One in 4² · 64, and the first.
+        assert!((8..=12).contains(&alone), "{alone}");
+    }
+
     #[test]
     fn a_way_that_becomes_cheaper_is_found() {
         let mut habit = Habit::default();

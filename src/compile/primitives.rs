@@ -298,7 +298,7 @@ impl Leaves for Primitives {
         // Which bundles may hit which triangle: all are found out before the first is tested.
         let mut near = [mask; BLOCK];
         if mask.count_ones() > FEW {
-            let planes = aspects.edge_planes();
+            let planes = aspects.edge_planes(pencils);
             for lane in lanes {
                 near[lane] &= pencils.meet(&planes, lane).to_bitmask();
             }

@@ -19,6 +19,10 @@ use crate::simd::{LANES, Mask16, Real, Vec3x8, Vec3x16, f32x8, f32x16};
 const ULPS: f32 = 48.0 * f32::EPSILON;
 /// Against products that underflow.
 const LEAST: f32 = 1e-34;
+/// A component whose reciprocal overflows is taken for 0: directions count as no shorter than what that is a rounding of.
+const SHORTEST: f32 = 1e-32;
+/// Beyond this margin the products themselves may overflow, and say nothing.
+const GREATEST: f32 = 1e31;
 
 /// Boxes of directions from one origin, one a lane.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +34,8 @@ pub struct Pencils {
     radius: Vec3x16,
     /// Greatest |x| + |y| + |z| of a direction.
     length: f32x16,
+    /// That of all.
+    longest: f32,
     /// What all of them have to do with the margins of triangles.
     rounding: Vec3,
 }
@@ -40,12 +46,14 @@ impl Pencils {
     pub fn new(org: Vec3, negative: [bool; 3], low: Vec3x16, high: Vec3x16) -> Self {
         let half = f32x16::splat(0.5);
         let greatest = low.abs().max(high.abs());
+        let length = greatest.element_sum().max(f32x16::splat(SHORTEST));
         Self {
             org,
             negative,
-            middle: (low + high).scale(half),
+            middle: low.scale(half) + high.scale(half),
             radius: (high - low).scale(half),
-            length: greatest.element_sum(),
+            length,
+            longest: length.reduce_max(),
             rounding: roundings(greatest).each(f32x16::reduce_max).into(),
         }
     }
@@ -96,15 +104,17 @@ pub struct EdgePlanes {
 }
 
 impl Aspect<f32x8> {
-    /// The planes through the edges and the origin.
+    /// The planes through the edges and the pencils' origin.
     #[inline]
-    pub fn edge_planes(&self) -> EdgePlanes {
+    pub fn edge_planes(&self, pencils: &Pencils) -> EdgePlanes {
         let size = |v: Vec3x8| v.abs().element_sum();
         let (e1, e2) = (self.e1, self.e2);
         let (u, v) = (e2.cross(self.s), self.q);
         let w = e2.cross(e1) - u - v;
         let (e1, e2) = (size(e1), size(e2));
         let margin = f32x8::splat(ULPS) * (size(self.s) * (e1 + e2) + e1 * e2) + f32x8::splat(LEAST);
+        let holds = (margin * f32x8::splat(pencils.longest)).lt(f32x8::splat(GREATEST));
+        let margin = f32x8::select(holds, margin, f32x8::splat(f32::INFINITY));
         let columns = |v: Vec3x8| [v.x.to_array(), v.y.to_array(), v.z.to_array()];
         EdgePlanes { u: columns(u), v: columns(v), w: columns(w), margin: margin.to_array() }
     }
@@ -150,7 +160,8 @@ mod tests {
             let lanes = TriangleLanes { v0, v1, v2, edges: f32x8::splat(triangle.edges()) };
             let pencils =
                 Pencils::new(org, [false; 3], Vec3x16::from_fn(|i| low[i]), Vec3x16::from_fn(|i| high[i]));
-            let meet = pencils.meet(&lanes.aspect(Vec3x8::splat(org)).edge_planes(), 5).to_bitmask();
+            let planes = lanes.aspect(Vec3x8::splat(org)).edge_planes(&pencils);
+            let meet = pencils.meet(&planes, 5).to_bitmask();
             for (lane, hit) in hit.into_iter().enumerate() {
                 hits += u32::from(hit);
                 culled += 1 - (meet >> lane & 1);
@@ -158,6 +169,37 @@ mod tests {
             }
         }
         assert!(hits > 50_000 && culled > 20_000, "{hits} hit, {culled} culled");
+    }
+
+    /// Directions that are made of their reciprocals, which overflow where a component is short; and products that do.
+    #[test]
+    fn no_ray_that_hits_is_culled_at_the_ends_of_the_floats() {
+        let mut random = Random::new(37);
+        // Length of edges, distance from the triangle, length of directions.
+        let shapes = [(1e5, 1e4, 1e-38), (1e6, 1e6, 1e26), (1e12, 1e12, 1e14), (1e-2, 1e-2, 3e38)];
+        for (edge, distance, length) in shapes {
+            let mut hits = 0;
+            for _ in 0..20_000 {
+                let [v0, v1, v2] = std::array::from_fn(|_| random.vector() * edge);
+                let triangle = Triangle::new(v0, v1, v2);
+                // Within the distance of an edge.
+                let target = v0 + triangle.e1() * random.signed().abs() + random.vector() * distance * 0.3;
+                let dir = random.vector();
+                let org = target - dir * distance;
+                let dir = dir / dir.abs().max_element() * length;
+                let ray = Ray::new(org, dir, f32::NEG_INFINITY, f32::INFINITY);
+                if triangle.intersect(&ray).is_some() {
+                    hits += 1;
+                    let [v0, v1, v2] = [v0, v1, v2].map(Vec3x8::splat);
+                    let lanes = TriangleLanes { v0, v1, v2, edges: f32x8::splat(triangle.edges()) };
+                    let towards = Vec3x16::splat(ray.rdir.recip());
+                    let pencils = Pencils::new(org, [false; 3], towards, towards);
+                    let planes = lanes.aspect(Vec3x8::splat(org)).edge_planes(&pencils);
+                    assert!(pencils.meet(&planes, 3).all(), "{triangle:?} from {org} along {dir}");
+                }
+            }
+            assert!(hits > 1000, "{hits} hits of edges {edge} long");
+        }
     }
 
     /// Rays at edges and vertices, where products are all rounding: each term of the margin has a row in which it
@@ -175,7 +217,7 @@ mod tests {
                 let triangle = Triangle::new(v0, v0 + random.vector() * edge, v0 + random.vector() * edge);
                 let [v0, v1, v2] = [triangle.v0, triangle.v1, triangle.v2].map(Vec3x8::splat);
                 let lanes = TriangleLanes { v0, v1, v2, edges: f32x8::splat(triangle.edges()) };
-                let planes = lanes.aspect(Vec3x8::splat(org)).edge_planes();
+                let aspect = lanes.aspect(Vec3x8::splat(org));
                 let along = 0.5 + 0.5 * random.signed();
                 for (u, v) in [(0.0, 0.0), (1.0, 0.0), (along, 0.0), (0.0, along), (along, 1.0 - along)] {
                     let dir = (triangle.v0 + triangle.e1() * u + triangle.e2() * v - org) * factor;
@@ -183,6 +225,7 @@ mod tests {
                     if dir != Vec3::ZERO && triangle.intersect(&ray).is_some() {
                         hits += 1;
                         let pencils = Pencils::new(org, [false; 3], Vec3x16::splat(dir), Vec3x16::splat(dir));
+                        let planes = aspect.edge_planes(&pencils);
                         assert!(pencils.meet(&planes, 3).all(), "{triangle:?} from {org} along {dir}");
                     }
                 }

@@ -36,6 +36,8 @@ use crate::simd::{Mask, Real, Vector3, vector3};
 const ULPS: f32 = 6.0 * f32::EPSILON;
 /// Against products that underflow.
 const LEAST: f32 = 1e-34;
+/// Against directions so short that what they have to do with margins underflows: far less than that of any others.
+const SHORT: f32 = f32::MIN_POSITIVE;
 
 /// Three vertices: all that neighbours share to the bit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,13 +119,13 @@ impl Triangle {
 /// the margins themselves.
 #[inline]
 pub(super) fn rounding<R: Real>(dir: Vector3<R>) -> R {
-    dir.abs().element_sum() * R::splat(1.2 * ULPS)
+    dir.abs().element_sum() * R::splat(1.2 * ULPS) + R::splat(SHORT)
 }
 
 /// The same, by components: for the margins that [`Aspect::margin_towards`] works out.
 #[inline]
 pub(super) fn roundings<R: Real>(dir: Vector3<R>) -> Vector3<R> {
-    dir.abs().scale(R::splat(1.2 * ULPS))
+    dir.abs().map(|d| d * R::splat(1.2 * ULPS) + R::splat(SHORT))
 }
 
 /// aⱼ·bₖ + aₖ·bⱼ for each axis i and the two others.

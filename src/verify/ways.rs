@@ -222,6 +222,41 @@ mod tests {
         );
     }
 
+    /// From farther away than scenes may reach, along directions that are short, long, or of one component that is hardly
+    /// there: products and reciprocals overflow, and vanish.
+    #[test]
+    fn the_ways_agree_at_the_ends_of_the_floats() {
+        let mut random = Random::new(9);
+        let mut hits = 0;
+        for scale in [1.0, 1e6, 1e12, 1e15, 3e17] {
+            let triangles: Vec<_> =
+                triangles().into_iter().map(|corners| corners.map(|v| v * scale)).collect();
+            let scene = scene_of(&triangles).unwrap();
+            for away in [1.0, 1e3, 1e8, 1e20] {
+                for length in [1e-44, 1e-40, 1e-38, 1e-30, 1e-20, 1e20, 1e26, 1e30, 1e38] {
+                    let org = random.vector() * (scale * away);
+                    let towards = triangles[random.below(triangles.len())];
+                    // Two tiles from one point, of which the second spreads more.
+                    let rays: Vec<Ray32> = (0..256)
+                        .map(|i| {
+                            let (s, t) = (random.unit(), random.unit());
+                            let spread = random.vector() * (scale * [0.0, 0.1][i / 128]);
+                            let [a, b, c] = towards;
+                            let target = a + (b - a) * (s * (1.0 - t)) + (c - a) * (s * t) + spread;
+                            let dir = (target - org) / (target - org).abs().max_element();
+                            Ray32::new(org, dir * length, 0.0, f32::INFINITY)
+                        })
+                        .filter(Ray32::is_valid)
+                        .collect();
+                    let found = compare(&scene, &rays, u64::MAX, &answers);
+                    assert_eq!(found.mismatches, 0, "{scale} {away} {length}: {:?}", found.exhibit);
+                    hits += found.hits;
+                }
+            }
+        }
+        assert!(hits > 10_000, "{hits}");
+    }
+
     /// A wave that does not see one triangle, wherever it is in the scene.
     #[test]
     fn a_fault_is_found_and_made_small() {

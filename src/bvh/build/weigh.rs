@@ -133,7 +133,8 @@ fn distribute(left: Costs, right: Costs) -> (Costs, u32x8) {
     shifted[8..].copy_from_slice(&right.to_array());
     let left = left.to_array();
     let mut least = Costs::splat(f32::INFINITY);
-    let mut from_left = u32x8::splat(0);
+    // One where none is less: costs that overflow are no reason to leave a side without a tree.
+    let mut from_left = u32x8::splat(1);
     for k in 1..=trees {
         let right = Costs::from_fn(|lane| shifted[8 - k + lane]);
         let cost = Costs::splat(left[k - 1]) + right;

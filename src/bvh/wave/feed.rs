@@ -89,11 +89,12 @@ impl Ready {
         let last = leaves(rdir.y, org.y, reach.y).min(leaves(rdir.z, org.z, reach.z).min(last));
         let last = last + last;
         let axis = |rdir: f32x8, inv: f32x8, org: f32x8, reach: f32x8| {
-            let shift = -(org * inv);
             let room = f32x8::splat(MARGIN) * inv * (org.abs() + reach);
             // A slab that is met too early because its reciprocal was cut off stays open until then.
             let open = f32x8::select(rdir.lt(f32x8::zero()), -last, last);
             let room = room + open.only(f32x8::splat(STEEPEST).lt(rdir.abs()));
+            // Nothing is moved where there is all the room: a difference of infinities would be nowhere.
+            let shift = -(org * inv).only(room.abs().lt(f32x8::splat(f32::INFINITY)));
             (shift - room, shift + room)
         };
         let x = axis(rdir.x, inv.x, org.x, reach.x);

@@ -125,6 +125,26 @@ fn lanes_equal_scalar_at_random() {
     });
 }
 
+/// Directions so short, or triangles so large, that a bound on rounding would itself be rounded to nothing, or beyond the
+/// greatest float.
+#[test]
+fn lanes_equal_scalar_at_the_ends_of_the_floats() {
+    at_random(400_000, |random| {
+        let scale = [1e3, 1e9, 1e15, 9e17][random.below(4) as usize];
+        let length = [1e-45, 1e-43, 1e-40, 1e-38, 1e-30, 1e20, 1e30][random.below(7) as usize];
+        let triangle =
+            Triangle::new(random.vector() * scale, random.vector() * scale, random.vector() * scale);
+        // At an edge, most of them.
+        let (u, v) = (random.signed().abs(), [0.0, 0.0, 1e-6, 0.3][random.below(4) as usize]);
+        let target = triangle.v0 + triangle.e1() * u + triangle.e2() * v;
+        let org = random.vector() * (scale * [1.0, 4.0, 1e6][random.below(3) as usize]);
+        let dir = (target - org) / scale;
+        let dir = dir / dir.abs().max_element() * length;
+        let dir = if dir == Vec3::ZERO { Vec3::splat(length) } else { dir };
+        (Ray::new(org, dir, 0.0, f32::INFINITY), triangle)
+    });
+}
+
 #[test]
 fn lanes_equal_scalar_on_a_grid() {
     at_random(200_000, |random| {
