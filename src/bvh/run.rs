@@ -90,10 +90,10 @@ impl Run {
         self.grouping
     }
 
-    /// May two whole runs be one tile?
+    /// May two runs be one tile?
     fn goes_with(&self, other: &Self) -> bool {
         let octant = |run: &Self| run.bundles[0].rdir.lane(0).to_array().map(|r| r < 0.0);
-        self.is_whole() && other.is_whole() && octant(self) == octant(other)
+        self.extent().is_some() && other.extent().is_some() && octant(self) == octant(other)
     }
 
     /// Which places hold rays of the stream.
@@ -236,37 +236,44 @@ impl Runs {
                 self.run.swap(0, left);
                 self.waiting.swap(0, left);
                 self.coherence.swap(0, left);
-            } else {
-                self.load::<ANY, L, S, T>(0, leaves, stream, tally);
+            } else if self.load::<ANY, L, S, T>(0, leaves, stream, tally) {
+                self.judge::<ANY>(0);
             }
         }
         self.waiting[0]
     }
 
+    /// Loads the next run; false if there is none.
     fn load<const ANY: bool, L: Leaves, S: Stream, T: Tally>(
         &mut self,
         which: usize,
         leaves: &L,
         stream: &S,
         tally: &mut T,
-    ) {
+    ) -> bool {
         if self.next >= stream.len() {
-            return;
+            return false;
         }
         let run = &mut self.run[which];
         run.load(stream, self.next, self.grouping);
-        self.next += run.len;
-        if run.len == RUN {
+        // What suits one run of a stream mostly suits the others.
+        if run.len == RUN && self.next.is_multiple_of(TILE_RUNS * RUN) {
             self.grouping = run.grouping.better(&run.bundles);
         }
+        self.next += run.len;
         if ANY {
             self.occluder.block(run, leaves, tally);
         }
         if !ANY || self.forced == Way::Tile {
             run.bound();
         }
-        self.waiting[which] =
-            Some(if self.forced == Way::Chosen { self.choose::<ANY>(which) } else { self.forced });
+        true
+    }
+
+    /// Decides which way a run goes that was loaded.
+    fn judge<const ANY: bool>(&mut self, which: usize) {
+        let chosen = self.forced == Way::Chosen;
+        self.waiting[which] = Some(if chosen { self.choose::<ANY>(which) } else { self.forced });
     }
 
     /// The run that was looked at.
@@ -275,7 +282,8 @@ impl Runs {
         &self.run[0]
     }
 
-    /// The run that was looked at and goes as a tile, and those after it as far as they go with it.
+    /// The run that was looked at and goes as a tile, and those after it as far as they go with it: up to the next whole
+    /// tile of the stream, as neighbours come in squares, or not at all.
     pub(super) fn take_tile<const ANY: bool, L: Leaves, S: Stream, T: Tally>(
         &mut self,
         leaves: &L,
@@ -284,12 +292,13 @@ impl Runs {
     ) -> &[Run] {
         self.waiting[0] = None;
         let mut count = 1;
-        while count < TILE_RUNS {
-            self.load::<ANY, L, S, T>(count, leaves, stream, tally);
-            if self.waiting[count] != Some(Way::Tile) || !self.run[0].goes_with(&self.run[count]) {
+        while !self.next.is_multiple_of(TILE_RUNS * RUN)
+            && self.load::<ANY, L, S, T>(count, leaves, stream, tally)
+        {
+            if !self.run[0].goes_with(&self.run[count]) {
+                self.judge::<ANY>(count);
                 break;
             }
-            self.waiting[count] = None;
             count += 1;
         }
         &self.run[..count]
