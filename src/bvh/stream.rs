@@ -75,31 +75,30 @@ pub(super) const AHEAD: usize = TILE_RUNS * RUN;
 
 /// Asks memory for the next rays step by step, while those before are traced: all at once would be more than it can
 /// have on its way, and the processor would wait until the queue is shorter.
-pub(super) struct Ahead<'a, S> {
-    stream: &'a S,
+pub(super) struct Ahead {
     next: usize,
     end: usize,
 }
 
-impl<'a, S: Stream> Ahead<'a, S> {
+impl Ahead {
     /// While rays from `first` on are traced, `count` of them.
-    pub(super) fn new(stream: &'a S, first: usize, count: usize) -> Self {
-        Self { stream, next: first + AHEAD, end: first + AHEAD + count }
+    pub(super) fn new(first: usize, count: usize) -> Self {
+        Self { next: first + AHEAD, end: first + AHEAD + count }
     }
 
     /// Eight more.
     #[inline]
-    pub(super) fn step(&mut self) {
+    pub(super) fn step<S: Stream>(&mut self, stream: &S) {
         if self.next < self.end {
-            self.stream.expect(self.next);
+            stream.expect(self.next);
             self.next += LANES;
         }
     }
 
     /// Whatever has not been asked for yet.
-    pub(super) fn finish(&mut self) {
+    pub(super) fn finish<S: Stream>(&mut self, stream: &S) {
         while self.next < self.end {
-            self.step();
+            self.step(stream);
         }
     }
 }
@@ -174,10 +173,9 @@ impl Bvh {
         for (hit, rays) in hits.iter_mut().zip(runs.iter().flat_map(|run| &run.bundles)) {
             hit.t = rays.t_far;
         }
-        let mut ahead = Ahead::new(stream, runs[0].first, RUN * runs.len());
-        let rays = (&rays, &beams);
-        let cost = self.intersect_tile::<ANY, L, S, T>(leaves, rays, &mut hits, &mut ahead, traversal);
-        ahead.finish();
+        let mut ahead = Ahead::new(runs[0].first, RUN * runs.len());
+        let step = || ahead.step(stream);
+        let cost = self.intersect_tile::<ANY, L, T>(leaves, (&rays, &beams), &mut hits, step, traversal);
         for (run, hits) in runs.iter().zip(hits.chunks(BUNDLES)) {
             if ANY {
                 let bits =
@@ -189,8 +187,10 @@ impl Bvh {
             for first in (0..RUN).step_by(LANES) {
                 let hits = run.grouping().hits(first, hits).or_miss(Mask8::splat(true)).to_hits();
                 stream.answer_packet(run.first + first, hits);
+                ahead.step(stream);
             }
         }
+        ahead.finish(stream);
         Some(cost)
     }
 
@@ -207,10 +207,10 @@ impl Bvh {
         let start = entry.as_ref().or(self.nodes.first());
         let mut blocked = run.blocked;
         let mut hits = [Hitx16::nothing(f32x16::zero()); BUNDLES];
-        let mut ahead = Ahead::new(stream, run.first, RUN);
+        let mut ahead = Ahead::new(run.first, RUN);
         for (i, hit) in hits.iter_mut().enumerate().take(run.bundles()) {
-            ahead.step();
-            ahead.step();
+            ahead.step(stream);
+            ahead.step(stream);
             let (ray, active) = run.bundle(i);
             hit.t = ray.t_far;
             if let Some(start) = start {

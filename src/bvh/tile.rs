@@ -6,11 +6,7 @@
 //! a bundle would take sixteen times is so taken once.
 
 use super::{
-    Bvh, Child, Hitx16, Kind, Leaves, Stream, Tally, Traversal,
-    beam::Beam,
-    bundle::BUNDLE,
-    cost::Cost,
-    stream::{Ahead, TILE},
+    Bvh, Child, Hitx16, Kind, Leaves, Tally, Traversal, beam::Beam, bundle::BUNDLE, cost::Cost, stream::TILE,
 };
 use crate::geometry::Rayx16;
 use crate::simd::{Mask, Mask16, Real, f32x16};
@@ -19,13 +15,14 @@ use crate::simd::{Mask, Mask16, Real, f32x16};
 const FEW: u32 = 4;
 
 impl Bvh {
-    /// Traces a tile, whose bundles the beams are around; `hits` as for [`Bvh::intersect_packet`]. Returns what it cost.
-    pub(super) fn intersect_tile<const ANY: bool, L: Leaves, S: Stream, T: Tally>(
+    /// Traces a tile, whose bundles the beams are around; `hits` as for [`Bvh::intersect_packet`]. `step` is called at each
+    /// node and leaf. Returns what it cost.
+    pub(super) fn intersect_tile<const ANY: bool, L: Leaves, T: Tally>(
         &self,
         leaves: &L,
         (rays, beams): (&[&Rayx16; TILE], &Beam<f32x16>),
         hits: &mut [Hitx16; TILE],
-        ahead: &mut Ahead<S>,
+        mut step: impl FnMut(),
         traversal: &mut Traversal<T>,
     ) -> Cost {
         let mut cost = Cost::TILE;
@@ -42,7 +39,7 @@ impl Bvh {
         let mut top = 1;
         while top > 0 {
             top -= 1;
-            ahead.step();
+            step();
             let ((child, enter), mask) = (stack[top], u32::from(masks[top]));
             if enter > end {
                 continue;

@@ -190,7 +190,7 @@ impl Feed {
         self.kind = runs.kind();
         self.kinds |= self.kind;
         let run = runs.take();
-        Ahead::new(stream, run.first, RUN).finish();
+        Ahead::new(run.first, RUN).finish(stream);
         self.entry = if ANY { run.entry(bvh) } else { None };
         if !bvh.nodes.is_empty() {
             let reach = bvh.reach();
