@@ -133,10 +133,9 @@ mod tests {
     #[test]
     fn bits_change_rows_for_columns() {
         let rows = [0b1000_0001, 0, 0b0110_0000, 0xff, 1, 2, 3, 0b1010_1010];
-        let columns = turned(rows);
-        for row in 0..8 {
-            for column in 0..8 {
-                assert_eq!(rows[row] >> column & 1, columns[column] >> row & 1, "row {row}, column {column}");
+        for (row, bits) in rows.into_iter().enumerate() {
+            for (column, turned) in turned(rows).into_iter().enumerate() {
+                assert_eq!(bits >> column & 1, turned >> row & 1, "row {row}, column {column}");
             }
         }
     }
