@@ -43,7 +43,7 @@ impl Pencils {
             middle: (low + high).scale(half),
             radius: (high - low).scale(half),
             length: greatest.element_sum(),
-            rounding: roundings(greatest).each(f32x8::reduce_max).into(),
+            rounding: roundings(greatest).map(f32x8::reduce_max).into(),
         }
     }
 

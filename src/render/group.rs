@@ -83,7 +83,7 @@ impl<R: Eights> Outgoing<R> for Group<'_, '_, R> {
         for (i, slots) in self.slots.as_chunks::<LANES>().0.iter().enumerate().take(R::LANES / LANES) {
             let lanes = lanes >> (i * LANES) & 0xff;
             if lanes != 0 {
-                let [org, dir, radiance] = [org, dir, radiance].map(|v| v.each(|v| v.eight(i)));
+                let [org, dir, radiance] = [org, dir, radiance].map(|v| v.map(|v| v.eight(i)));
                 let ray = (org, dir, t_far.eight(i));
                 self.out.connections.push(lanes, ray, radiance, u32x8::new(*slots));
             }
