@@ -328,7 +328,8 @@ mod tests {
         let line = (Vec3::Z.into(), Vec3::NEG_Z.into());
         let own = [0, 1].map(|index| Path::<f32>::start(7, 3).random(FIRST as u32, index));
         // The pairs that an integrator asks for, and which of the first two are there afterwards.
-        let asks: [(fn(&Vertex<'_, f32>), [bool; 2]); 5] = [
+        type Ask = fn(&Vertex<'_, f32>);
+        let asks: [(Ask, [bool; 2]); 5] = [
             (|_| {}, [false, false]),
             (
                 |vertex| {
