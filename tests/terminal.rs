@@ -162,6 +162,9 @@ fn what_is_told_on_a_narrow_terminal_is_broken_between_words() {
             seen.filter(|line| line.chars().count() > NARROW && !line.contains(&out)).collect();
         assert!(wide.is_empty() && told.lines().count() > 4, "{words}: {wide:#?}\n{told}");
     }
+    // A table that has no room is another table, not one whose lines go on below.
+    let told = on_columns(NARROW, "bench scenes/cornell.xml --repeat 1", "1").expect("it was there");
+    assert_eq!(told.lines().filter(|line| line.starts_with("    single rays ")).count(), 5, "{told}");
     let words = "verify scenes/cornell.xml --most 512";
     let piped = stdout(&packlight(&words.split(' ').collect::<Vec<_>>()));
     let told = on_columns(NARROW / 2, words, "1").expect("it was there");

@@ -163,7 +163,7 @@ impl Run {
             high = Vec3x16::select(active, rays.dir.max(high), high);
         }
         let fold = |v: Vec3x16, of: fn(f32x8, f32x8) -> f32x8| {
-            v.each(|v| {
+            v.map(|v| {
                 let [one, other] = v.halves();
                 of(one, other)
             })

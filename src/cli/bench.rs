@@ -24,7 +24,7 @@ use crate::{
     render::{Query, RayClass, measure, ray_classes},
     scene::{Geometry, Material, MaterialIndex, SceneDescription, Shape},
 };
-use row::{Build, Row};
+use row::{Build, Row, Table};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -108,11 +108,12 @@ fn bench(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(folder) = &arguments.save_rays {
         save(folder, &classes)?;
     }
+    let table = Table::within(console::columns());
     if !arguments.json {
-        console::print(&Build::new(arguments.name(), scene.summary()).to_string())?;
+        console::print(&Build::new(arguments.name(), scene.summary(), table).to_string())?;
     }
     for class in &classes {
-        arguments.measure(&scene, class, invalid)?;
+        arguments.measure(&scene, class, invalid, table)?;
     }
     Ok(())
 }
@@ -122,7 +123,7 @@ impl Arguments {
         self.scene.as_ref().or(self.mesh.as_ref()).map(|path| path.display().to_string()).unwrap_or_default()
     }
 
-    fn measure(&self, scene: &Scene, class: &RayClass, invalid: u64) -> Result<(), Failure> {
+    fn measure(&self, scene: &Scene, class: &RayClass, invalid: u64, table: Table) -> Result<(), Failure> {
         let packets = measure::packets_by(scene, class, self.way.into(), self.repeat);
         let mut row = Row::new(class, invalid, packets, scene.summary());
         if self.json {
@@ -133,7 +134,7 @@ impl Arguments {
             warn_of(format!("{}: packets and single rays differ; please report it", class.name));
         }
         let counts = measure::count_packets(scene, class, self.way.into());
-        row.compare(singles, counts, measure::count_singles(scene, class));
+        row.compare(singles, counts, measure::count_singles(scene, class), table);
         console::print(&row.to_string())
     }
 

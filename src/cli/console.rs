@@ -11,10 +11,15 @@ use super::failure::Failure;
 /// Blanks between columns, and before what is left of a line that has none.
 const INDENT: usize = 2;
 
+/// Columns of the terminal that stdout is, if it is one.
+pub(super) fn columns() -> Option<usize> {
+    terminal_size_of(stdout()).map(|(Width(columns), _)| columns.into())
+}
+
 /// Writes to stdout, on a terminal [`folded`] to its width; elsewhere a line stays a line, to be searched for.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
-    match terminal_size_of(stdout()) {
-        Some((Width(columns), _)) => print_as_it_is(&folded(text, columns.into())),
+    match columns() {
+        Some(columns) => print_as_it_is(&folded(text, columns)),
         None => print_as_it_is(text),
     }
 }

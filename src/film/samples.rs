@@ -3,8 +3,8 @@
 //! Several samples of a pixel come together, and are added one after the other, so the order is that of single ones; but
 //! the pixel's sums are fetched and put back once.
 
-use super::sums::{BLOCK, Quad, Sums};
-use crate::simd::{Mask, Mask8, Real, f32x8};
+use super::sums::{BLOCK, Quad, Sums, WEIGHT, place};
+use crate::simd::{Eights, LANES, Mask, Mask8, Real, f32x8, f32x16};
 
 /// The greatest value of a sample: no sum of as many as can be counted overflows. Whether a sample is kept
 /// must not depend on those before it, which may be on another machine.
@@ -50,31 +50,35 @@ impl<'f> Samples<'f> {
             return;
         }
         for c in 0..channels {
-            *self.sums.number(pixel, c) += value(c) * weight;
+            *self.sums.number(pixel, place(c)) += value(c) * weight;
         }
-        *self.sums.number(pixel, channels) += weight;
+        *self.sums.number(pixel, WEIGHT) += weight;
         *self.sums.row(pixel).1 += 1;
     }
 
     /// Adds all of the samples to a pixel, one for each of the weights.
     ///
-    /// A sample is a row as [`quads`](super::sums::quads) describes it: the channels, then 1, then zeros. Its first quads are
-    /// in `fronts`, row after row, and what is behind them in `backs`, filled up to whole eights.
+    /// A sample is a row of so many [`quads`](super::sums::quads): each channel at its [`place`], 1 at that of the
+    /// [`WEIGHT`], then zeros. Its first quads are in `fronts`, row after row, and what is behind them in `backs`, filled up to
+    /// whole eights.
     #[inline]
     pub fn add_rows(&mut self, pixel: usize, weights: &[f32], fronts: &[Quad], backs: &[f32x8]) {
         let begin = self.begin();
         let (row, count) = self.sums.row(pixel);
-        let quads = fronts.len() / weights.len().max(1);
         // Three colours, and layers besides.
-        let all = match (quads, row.len()) {
-            (1, 1) => add_small::<0>(begin, row, weights, fronts, backs),
-            (1, 3) => add_small::<1>(begin, row, weights, fronts, backs),
-            (1, 5) => add_small::<2>(begin, row, weights, fronts, backs),
+        let all = match row.len() {
+            _ if fronts.len() != weights.len() => false,
+            1 => add_colours(begin, row, weights, fronts),
+            3 => add_layers::<f32x8>(begin, row, weights, fronts, backs),
+            5 => add_layers::<f32x16>(begin, row, weights, fronts, backs),
             _ => false,
         };
         let kept = match all {
             true => (1 << weights.len()) - 1,
-            false => add_good(begin, row.split_at_mut(quads), weights, fronts, backs),
+            false => {
+                let quads = fronts.len() / weights.len().max(1);
+                add_good(begin, row.split_at_mut(quads), weights, fronts, backs)
+            }
         };
         *count = kept.count_ones() + if begin { 0 } else { *count };
         if kept.count_ones() as usize != weights.len() {
@@ -91,46 +95,52 @@ impl<'f> Samples<'f> {
     }
 }
 
-/// Adds rows of one quad and so many eights, in registers, if no number of any is too great. Are they there now?
+/// Adds rows of one quad, in registers, if no number of any is too great. Are they there now?
 #[inline(always)]
-fn add_small<const EIGHTS: usize>(
+fn add_colours(begin: bool, row: &mut [Quad], weights: &[f32], fronts: &[Quad]) -> bool {
+    let Some(row) = row.first_mut() else { return false };
+    let mut sums = if begin { f32x8::zero() } else { f32x8::of_halves(*row, [0.0; 4]) };
+    let greatest = f32x8::splat(GREATEST);
+    let mut fits = Mask8::splat(true);
+    for (&weight, &front) in weights.iter().zip(fronts) {
+        let more = f32x8::of_halves(front, [0.0; 4]) * f32x8::splat(weight);
+        fits = fits & more.abs().le(greatest);
+        sums = sums + more;
+    }
+    if fits.all() {
+        *row = sums.half(0);
+    }
+    fits.all()
+}
+
+/// Adds rows of one quad and a register behind it, the same way.
+#[inline(always)]
+fn add_layers<R: Eights>(
     begin: bool,
     row: &mut [Quad],
     weights: &[f32],
     fronts: &[Quad],
     backs: &[f32x8],
 ) -> bool {
-    let Some((row_front, row_back)) = row.split_first_mut() else { return false };
-    let row_back = row_back.as_chunks_mut::<2>().0;
-    let mut sums_front = f32x8::zero();
-    let mut sums = [f32x8::zero(); EIGHTS];
+    let Some((front, back)) = row.split_first_mut() else { return false };
+    let (mut sums, greatest) = (R::zero(), R::splat(GREATEST));
     if !begin {
-        sums_front = f32x8::of_halves(*row_front, [0.0; 4]);
-        for (sums, pair) in sums.iter_mut().zip(row_back.iter()) {
-            *sums = f32x8::of_halves(pair[0], pair[1]);
-        }
+        sums = R::of_eights(|i| f32x8::of_halves(back[2 * i], back[2 * i + 1]));
     }
-    let greatest = f32x8::splat(GREATEST);
-    let mut fits = Mask8::splat(true);
-    let mut backs = backs.iter();
-    for (&weight, &front) in weights.iter().zip(fronts) {
-        let weight = f32x8::splat(weight);
-        let more = f32x8::of_halves(front, [0.0; 4]) * weight;
+    let mut fits = R::Mask::splat(true);
+    for (&weight, row) in weights.iter().zip(backs.chunks_exact(R::LANES / LANES)) {
+        let more = R::of_eights(|i| row[i]) * R::splat(weight);
         fits = fits & more.abs().le(greatest);
-        sums_front = sums_front + more;
-        for (sums, &back) in sums.iter_mut().zip(&mut backs) {
-            let more = back * weight;
-            fits = fits & more.abs().le(greatest);
-            *sums = *sums + more;
+        sums = sums + more;
+    }
+    let fits = fits.all() && add_colours(begin, std::slice::from_mut(front), weights, fronts);
+    if fits {
+        for (i, pair) in back.as_chunks_mut::<2>().0.iter_mut().enumerate() {
+            let eight = sums.eight(i);
+            *pair = [eight.half(0), eight.half(1)];
         }
     }
-    if fits.all() {
-        *row_front = sums_front.half(0);
-        for (pair, sums) in row_back.iter_mut().zip(sums) {
-            *pair = [sums.half(0), sums.half(1)];
-        }
-    }
-    fits.all()
+    fits
 }
 
 /// Adds rows of which no number is too great. Those are bits of the result: the first is bit 0.
@@ -178,8 +188,6 @@ fn add_good(
 mod tests {
     use super::super::{TileFilm, sums};
     use super::*;
-    use crate::simd::LANES;
-
     fn noise(number: usize) -> f32 {
         ((number as u32).wrapping_mul(2_654_435_761) >> 8) as f32 * 1e-3
     }
@@ -200,8 +208,8 @@ mod tests {
     fn row(at: (usize, usize), channels: usize, front: usize) -> (Vec<Quad>, Vec<f32x8>) {
         let all = sums::quads(channels);
         let mut row = vec![0.0; 4 * all.max(front).next_multiple_of(2) + 8];
-        (0..channels).for_each(|c| row[c] = value((at.0, at.1, c), channels));
-        row[channels] = 1.0;
+        (0..channels).for_each(|c| row[place(c)] = value((at.0, at.1, c), channels));
+        row[WEIGHT] = 1.0;
         let (quads, back) = row.split_at(4 * front);
         let eights = (all - front).div_ceil(2);
         let back = back.as_chunks::<LANES>().0.iter().take(eights).map(|&eight| f32x8::new(eight));

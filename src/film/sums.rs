@@ -20,8 +20,18 @@ pub const BLOCK: u32 = 16;
 /// Four numbers of a pixel, side by side.
 pub type Quad = [f32; 4];
 
-/// In a row of so many channels: each of them, and 1 behind the last. A pixel's row is all that a sample has to
-/// touch; were its channels in planes, their lines would drive each other out of the cache.
+/// The place in a row of what counts samples: 1 in each of them. So the first quad is a colour and its weight, and what
+/// is behind it depends on neither.
+pub const WEIGHT: usize = 3;
+
+/// The place in a row of a channel's number.
+#[inline]
+pub fn place(channel: usize) -> usize {
+    channel + usize::from(channel >= WEIGHT)
+}
+
+/// In a row of so many channels. A pixel's row is all that a sample has to touch; were its channels in planes, their
+/// lines would drive each other out of the cache.
 pub fn quads(channels: usize) -> usize {
     let numbers = channels + 1;
     numbers.div_ceil(4)
@@ -30,7 +40,7 @@ pub fn quads(channels: usize) -> usize {
 /// Sums over the pixels of a tile, of some samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sums {
-    /// Pixel after pixel, a row each: its channels, what its samples count together, and zeros.
+    /// Pixel after pixel, a row each: its channels, among them what its samples count together, and zeros.
     rows: Vec<Quad>,
     channels: usize,
     /// How many samples there are of each pixel.
@@ -50,7 +60,8 @@ impl Sums {
         let mut sums = fits.then(|| Self::new(pixels, values.len() / pixels))?;
         sums.counts = counts;
         for (c, plane) in values.chunks_exact(pixels).chain([weights]).enumerate() {
-            plane.iter().enumerate().for_each(|(pixel, &value)| *sums.number(pixel, c) = value);
+            let at = sums.at(c);
+            plane.iter().enumerate().for_each(|(pixel, &value)| *sums.number(pixel, at) = value);
         }
         Some(sums)
     }
@@ -72,14 +83,19 @@ impl Sums {
 
     /// A channel's sums, pixel after pixel; the channel behind the last is what the samples of each pixel count together.
     pub fn plane(&self, channel: usize) -> impl Iterator<Item = f32> {
-        let rows = self.rows.chunks_exact(quads(self.channels));
-        rows.map(move |row| row[channel / 4][channel % 4])
+        let (rows, at) = (self.rows.chunks_exact(quads(self.channels)), self.at(channel));
+        rows.map(move |row| row[at / 4][at % 4])
     }
 
-    /// One of the numbers in a pixel's row.
-    pub(super) fn number(&mut self, pixel: usize, number: usize) -> &mut f32 {
+    /// The place in a row of a channel, or of what is behind the last.
+    fn at(&self, channel: usize) -> usize {
+        if channel == self.channels { WEIGHT } else { place(channel) }
+    }
+
+    /// The number at a place in a pixel's row.
+    pub(super) fn number(&mut self, pixel: usize, at: usize) -> &mut f32 {
         let row = pixel * quads(self.channels);
-        &mut self.rows[row + number / 4][number % 4]
+        &mut self.rows[row + at / 4][at % 4]
     }
 
     /// These and later ones.
@@ -97,10 +113,10 @@ impl Sums {
     /// Divided by their weights, so that what is the same everywhere stays the same; but a few samples of
     /// both signs may weigh nothing together, and are then divided by their number.
     pub fn means(&self, channel: usize, first: usize, out: &mut [f32]) {
-        let (quads, last) = (quads(self.channels), self.channels);
+        let (quads, at) = (quads(self.channels), place(channel));
         let rows = self.rows[first * quads..].chunks_exact(quads);
         for ((mean, row), &count) in out.iter_mut().zip(rows).zip(&self.counts[first..]) {
-            let (sum, weight) = (row[channel / 4][channel % 4], row[last / 4][last % 4]);
+            let (sum, weight) = (row[at / 4][at % 4], row[0][WEIGHT]);
             let quotient = sum / if weight > 0.0 { weight } else { count as f32 };
             *mean = if count == 0 { 0.0 } else { quotient };
         }

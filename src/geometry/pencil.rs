@@ -54,7 +54,7 @@ impl Pencils {
             radius: (high - low).scale(half),
             length,
             longest: length.reduce_max(),
-            rounding: roundings(greatest).each(f32x16::reduce_max).into(),
+            rounding: roundings(greatest).map(f32x16::reduce_max).into(),
         }
     }
 

@@ -128,11 +128,14 @@ fn wavefront(description: &SceneDescription) -> u64 {
         }
         Integrator::Aov { .. } => (0, 1),
     };
-    let summed = row(channels(description).len() as u64) * FLOAT;
-    let added = if matches!(description.integrator, Integrator::Aov { .. }) { summed } else { 4 * FLOAT };
+    let (all, layers) = (channels(description).len(), aov::layers(&description.aovs).count());
+    let (all, lit) = (row(all as u64), row((all - layers) as u64));
+    // What layers have behind the quads of light comes in eights.
+    let (summed, brought) = (all * FLOAT, (lit + (all - lit).next_multiple_of(LANES as u64)) * FLOAT);
+    let added = lit * FLOAT;
     // Rows and places of paths, now and next, and alive or not; their octants; hits, keys and order; points of the film;
-    // sums of the round; rows of connections, light, keys and orders.
-    let path = 69 * (1 + branches) + 12 + 28 + 8 + added + shadow_rays * 15 * FLOAT;
+    // sums of the round; rows of connections, light, keys and order.
+    let path = 69 * (1 + branches) + 12 + 28 + 8 + added + shadow_rays * 14 * FLOAT;
     let (pixels, together) = (u64::from(TILE * TILE), most_together(description.sensor.sampler.sample_count));
     let samples = pixels * u64::from(together);
     // Where paths branch there are more of them than began, say two and a half times as many; and an arena keeps what
@@ -140,14 +143,14 @@ fn wavefront(description: &SceneDescription) -> u64 {
     let begun = samples.min(paths_at_once(shadow_rays as usize) as u64);
     let slots = LANES as u64 + if branches > 1 { begun * 5 / 2 } else { begun };
     // What each sample brings and counts; and sums that a thread keeps for its next block.
-    let brought = samples * (summed + FLOAT) + pixels * (summed + FLOAT);
+    let brought = samples * (brought + FLOAT) + pixels * (summed + FLOAT);
     2 * slots * path + brought
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Film, Geometry, MaterialIndex, Shape};
+    use crate::scene::{Aov, AovChannel, Film, Geometry, MaterialIndex, Shape};
 
     const CONDITIONS: Conditions = Conditions { quality: Quality::Medium, threads: 2, keeps_sums: false };
 
@@ -215,6 +218,26 @@ mod tests {
         assert!(of(16) > 3 * of(1), "{} {}", of(16), of(1));
         // Half of those that are brought are not in flight.
         assert!(of(16) > of(8) && of(16) < 2 * of(8));
+    }
+
+    #[test]
+    fn layers_come_in_eights() {
+        let of = |layers| {
+            let mut description = SceneDescription::default();
+            description.sensor.sampler.sample_count = 1;
+            description.aovs = [Aov::Depth, Aov::Uv, Aov::Position]
+                .into_iter()
+                .take(layers)
+                .map(|kind| AovChannel { name: format!("{kind:?}"), kind })
+                .collect();
+            wavefront(&description)
+        };
+        let pixels = u64::from(TILE * TILE);
+        // A quad of sums for up to four numbers, and room for eight in flight.
+        assert_eq!(
+            [1, 2, 3].map(|layers| of(layers) - of(0)),
+            [4 + 8, 4 + 8, 8 + 8].map(|n| pixels * n * FLOAT)
+        );
     }
 
     #[test]

@@ -12,9 +12,8 @@ pub(super) struct Connections<'a> {
     rays: Rows<'a>,
     /// Red, green and blue, and nothing.
     light: BumpVec<'a, [f32; 4]>,
+    /// In which order they are traced.
     octants: Octants<'a>,
-    /// The rays in the order in which they are traced.
-    order: BumpVec<'a, u32>,
     pub(super) len: usize,
 }
 
@@ -24,7 +23,6 @@ impl<'a> Connections<'a> {
             rays: BumpVec::new_in(arena),
             light: BumpVec::new_in(arena),
             octants: Octants::new(arena),
-            order: BumpVec::new_in(arena),
             len: 0,
         }
     }
@@ -62,17 +60,13 @@ impl<'a> Connections<'a> {
 
     /// No more rays are asked for: those into one octant are traced together, whichever light they go to.
     pub(super) fn order_by_octant(&mut self) {
-        let Self { rays, octants, order, len, .. } = self;
-        order.clear();
-        order.extend_from_slice(&octants.order(rays[..*len].iter())[..*len]);
-        let last = order.last().copied().unwrap_or_default();
-        reserve(order, *len, last);
+        self.octants.sort(self.rays[..self.len].iter());
     }
 
     /// The packet that starts at a place in the order.
     #[inline]
     pub(super) fn rays(&self, first: usize) -> RayLanes<f32x8> {
-        let numbers: [u32; LANES] = self.order[first..].first_chunk().copied().unwrap_or_default();
+        let numbers: [u32; LANES] = self.octants.order()[first..].first_chunk().copied().unwrap_or_default();
         let [ox, oy, oz, dx, dy, dz, t_far, _] = gather(&self.rays, &numbers);
         RayLanes::new(vector3(ox, oy, oz), vector3(dx, dy, dz), f32x8::zero(), t_far)
     }
@@ -80,7 +74,7 @@ impl<'a> Connections<'a> {
     /// What the ray at a place in the order would have brought is nothing.
     #[inline]
     pub(super) fn block(&mut self, place: usize) {
-        self.light[self.order[place] as usize] = [0.0; 4];
+        self.light[self.octants.order()[place] as usize] = [0.0; 4];
     }
 
     /// Slots and light, each slot's rays in the order in which they were asked for.
@@ -111,7 +105,8 @@ mod tests {
         connections.order_by_octant();
         // The first three point into another octant, and are traced last.
         let rays = connections.rays(0);
-        assert_eq!([0, 1, 2, 3, 4, 5].map(|i| rays.t_far.lane(i)), [0.0, 1.0, 2.0, 2.0, 5.0, 7.0]);
+        // Lanes behind the last hold it, too.
+        assert_eq!(rays.t_far.to_array(), [0.0, 1.0, 2.0, 2.0, 5.0, 7.0, 7.0, 7.0]);
         assert_eq!((rays.dir.lane(2), rays.dir.lane(5)), (glam::Vec3::splat(4.0), glam::Vec3::splat(-7.0)));
         connections.block(2);
         connections.block(4);

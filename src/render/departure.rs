@@ -104,6 +104,16 @@ impl<R: Real> Departure<R> {
     }
 }
 
+/// Does [`Departure::connect_one`] look at its pair of numbers?
+#[inline]
+pub(super) fn draws_one(scene: &Scene) -> bool {
+    match &scene.lights[..] {
+        [] => false,
+        [only] => only.is_drawn(),
+        _ => true,
+    }
+}
+
 /// The different values among lanes, each with its lanes.
 #[inline]
 pub(super) fn distinct<R: Real>(values: R::Bits) -> impl Iterator<Item = (u32, R::Mask)> {

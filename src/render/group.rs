@@ -6,12 +6,12 @@ use super::census::Ends;
 use super::connections::Connections;
 use super::integrator::{End, Outgoing, Path};
 use super::rows::{Packet, Paths, reserve};
-use crate::film::sums::Quad;
+use crate::film::sums::{Quad, place};
 use crate::simd::{Eights, LANES, MOST, Mask, Real, Vector3, f32x8, transpose, u32x8};
 
 /// What the groups of a round have said, by slot.
 pub(super) struct Outputs<'a> {
-    /// The integrator's channels are so many quads, the last one padded.
+    /// The integrator's channels are so many quads of a row, in which nothing is said where the weight is.
     pub(super) quads: usize,
     /// What the vertex adds, four channels at a time, slot after slot.
     pub(super) added: BumpVec<'a, Quad>,
@@ -50,8 +50,9 @@ impl<R: Eights> Outgoing<R> for Group<'_, '_, R> {
         if (!value.equal(R::zero())).none() {
             return;
         }
+        let at = place(channel);
         for (i, &slot) in self.slots[..self.count].iter().enumerate() {
-            self.out.added[slot as usize * self.out.quads + channel / 4][channel % 4] = value.lane(i);
+            self.out.added[slot as usize * self.out.quads + at / 4][at % 4] = value.lane(i);
         }
     }
 
@@ -83,7 +84,7 @@ impl<R: Eights> Outgoing<R> for Group<'_, '_, R> {
         for (i, slots) in self.slots.as_chunks::<LANES>().0.iter().enumerate().take(R::LANES / LANES) {
             let lanes = lanes >> (i * LANES) & 0xff;
             if lanes != 0 {
-                let [org, dir, radiance] = [org, dir, radiance].map(|v| v.each(|v| v.eight(i)));
+                let [org, dir, radiance] = [org, dir, radiance].map(|v| v.map(|v| v.eight(i)));
                 let ray = (org, dir, t_far.eight(i));
                 self.out.connections.push(lanes, ray, radiance, u32x8::new(*slots));
             }
@@ -126,7 +127,7 @@ mod tests {
     fn lanes_beyond_the_count_say_nothing() {
         let arena = Bump::new();
         let mut out = Outputs {
-            quads: 1,
+            quads: 2,
             added: BumpVec::new_in(&arena),
             connections: Connections::new(&arena),
             next: Paths::new(&arena),
@@ -147,9 +148,12 @@ mod tests {
         group.add_rgb(vector3(zero.x, f32x8::from_fn(|i| i as f32), one));
         group.shadow(0, all, (zero, zero, one), zero);
         group.next(0, all, (zero, zero), &Path::start(u32x8::splat(1), u32x8::splat(0)));
-        let said: Vec<usize> = (0..16).filter(|&slot| out.added[slot] != [0.0; 4]).collect();
+        let rows = out.added.as_chunks::<2>().0;
+        let said: Vec<usize> = (0..16).filter(|&slot| rows[slot] != [[0.0; 4]; 2]).collect();
         assert_eq!(said, [3, 9]);
-        assert_eq!((out.added[3], out.added[9]), ([0.0, 0.0, 1.0, 1.0], [0.0, 1.0, 1.0, 1.0]));
+        // The fourth channel is behind the weight's place.
+        let fourth = [1.0, 0.0, 0.0, 0.0];
+        assert_eq!((rows[3], rows[9]), ([[0.0, 0.0, 1.0, 0.0], fourth], [[0.0, 1.0, 1.0, 0.0], fourth]));
         assert_eq!(out.connections.len, 2);
         let alive: Vec<usize> = (0..16).filter(|&slot| out.alive[slot]).collect();
         assert_eq!(alive, [3, 9]);

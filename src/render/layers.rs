@@ -19,9 +19,8 @@ pub(super) struct Layers<'a> {
     aovs: AovIntegrator,
     /// Channels before the first layer.
     first: usize,
-    /// Eight pixels' rows of the film, a register a number, for each eight of a group. What is behind the channels stays as
-    /// it is.
-    values: [BumpVec<'a, f32x8>; MOST / LANES],
+    /// Eight pixels' rows of the film, a register a number, for each eight of a group. What is not of layers stays as it is.
+    values: BumpVec<'a, Lanes>,
     /// What is in the film's rows behind the quads that light has, pixel after pixel.
     rows: BumpVec<'a, f32x8>,
     /// In a row of these.
@@ -30,16 +29,16 @@ pub(super) struct Layers<'a> {
     quads: usize,
 }
 
+/// A number of each of a group's pixels.
+type Lanes = [f32x8; MOST / LANES];
+
 impl<'a> Layers<'a> {
     /// Layers that are these channels of the picture, the last ones.
     pub(super) fn new(arena: &'a Bump, scene: &Scene, channels: Range<usize>) -> Self {
-        let quads = channels.start.div_ceil(4);
+        let quads = sums::quads(channels.start);
         let eights = (sums::quads(channels.end) - quads).div_ceil(2);
-        let values = std::array::from_fn(|_| {
-            let mut values = vec![in arena; f32x8::zero(); 4 * quads + LANES * eights];
-            values[channels.end] = f32x8::one();
-            values
-        });
+        let mut values = vec![in arena; [f32x8::zero(); MOST / LANES]; 4 * quads + LANES * eights];
+        values[sums::WEIGHT] = [f32x8::one(); MOST / LANES];
         let aovs = AovIntegrator::new(scene.aovs.clone());
         Self { aovs, first: channels.start, values, rows: BumpVec::new_in(arena), eights, quads }
     }
@@ -50,14 +49,9 @@ impl<'a> Layers<'a> {
         self.aovs.draws
     }
 
-    /// Room for so many pixels. Where nothing will be said of them, it is said now, to their `light` too.
-    pub(super) fn clear(&mut self, len: usize, light: Option<&mut [Quad]>) {
+    /// Room for so many pixels. What is there stays, until something is said of them: nothing, if nobody ever does.
+    pub(super) fn reserve(&mut self, len: usize) {
         self.rows.resize(len * self.eights, f32x8::zero());
-        if let Some(light) = light {
-            for first in (0..len).step_by(LANES) {
-                self.place(0, std::array::from_fn(|i| (first + i).min(len - 1)), light);
-            }
-        }
     }
 
     /// Of these pixels.
@@ -72,42 +66,44 @@ impl<'a> Layers<'a> {
         &mut self,
         pixels: R::Bits,
         light: &mut [Quad],
-        say: impl FnOnce(&AovIntegrator, &mut Beside<'_, Lanes<'_, 'a>>),
+        say: impl FnOnce(&AovIntegrator, &mut Beside<'_, Said<'_>>),
     ) {
-        say(&self.aovs, &mut Beside { out: &mut Lanes(&mut self.values), first: self.first });
+        say(&self.aovs, &mut Beside { out: &mut Said(&mut self.values), first: self.first });
         for i in 0..R::LANES / LANES {
             // Lanes behind the last of a group say what it says.
-            let pixels = std::array::from_fn(|lane| pixels.lane(i * LANES + lane) as usize);
+            let pixels = std::array::from_fn(|lane| pixels.lane(i * LANES + lane));
             self.place(i, pixels, light);
         }
     }
 
     /// Puts one eight of a group into the rows of its pixels.
     #[inline]
-    fn place(&mut self, i: usize, pixels: [usize; LANES], light: &mut [Quad]) {
-        let (shared, own) = self.values[i].split_at(4 * self.quads);
-        for (number, value) in shared.iter().enumerate().skip(self.first) {
-            for (value, pixel) in value.to_array().into_iter().zip(pixels) {
-                light[pixel * self.quads + number / 4][number % 4] = value;
+    fn place(&mut self, i: usize, pixels: [u32; LANES], light: &mut [Quad]) {
+        let (shared, own) = self.values.split_at(4 * self.quads);
+        for (at, lanes) in shared.iter().enumerate().skip(sums::place(self.first)) {
+            for (value, pixel) in lanes[i].to_array().into_iter().zip(pixels) {
+                light[pixel as usize * self.quads + at / 4][at % 4] = value;
             }
         }
         for (k, eight) in own.as_chunks::<LANES>().0.iter().enumerate() {
-            for (numbers, pixel) in transpose(*eight).into_iter().zip(pixels) {
-                self.rows[pixel * self.eights + k] = numbers;
+            for (numbers, pixel) in transpose(eight.map(|lanes| lanes[i])).into_iter().zip(pixels) {
+                self.rows[pixel as usize * self.eights + k] = numbers;
             }
         }
     }
 }
 
-/// A register a channel, for each eight of a group.
-pub(super) struct Lanes<'v, 'a>(&'v mut [BumpVec<'a, f32x8>; MOST / LANES]);
+/// What is said of a group, number by number.
+pub(super) struct Said<'v>(&'v mut [Lanes]);
 
-impl<R: Eights> Outgoing<R> for Lanes<'_, '_> {
+impl<R: Eights> Outgoing<R> for Said<'_> {
     /// A sum of one, as everything else that a pixel has: −0 is 0.
     #[inline]
     fn add(&mut self, channel: usize, value: R) {
-        for (i, values) in self.0.iter_mut().enumerate().take(R::LANES / LANES) {
-            values[channel] = f32x8::zero() + value.eight(i);
+        let value = R::zero() + value;
+        let lanes = &mut self.0[sums::place(channel)];
+        for (i, lanes) in lanes.iter_mut().enumerate().take(R::LANES / LANES) {
+            *lanes = value.eight(i);
         }
     }
 

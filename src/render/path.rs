@@ -4,6 +4,7 @@
 //! BSDF; a light that is found both ways is weighted by the power heuristic \[VG95\]. Russian roulette goes
 //! by the throughput without the squared index of refraction that glass puts into it.
 
+use super::departure::draws_one;
 use super::integrator::{End, Integrator, Line, Outgoing, Path};
 use super::vertex::{Sampled, Vertex, environment};
 use crate::compile::Scene;
@@ -46,16 +47,22 @@ impl Integrator for PathTracer {
         }
         let survives_by_chance = path.depth + 1 >= self.rr_depth;
         let unused = (R::zero(), R::zero());
-        let ([light, direction], (lobe, roulette)) =
-            match (vertex.is_smooth(), survives_by_chance || vertex.chooses_lobes()) {
-                (true, true) => {
-                    let [light, direction, lobe] = vertex.randoms(PAIRS, [0, 1, 2]);
-                    ([light, direction], lobe)
-                }
-                (true, false) => (vertex.randoms(PAIRS, [0, 1]), unused),
-                (false, true) => ([unused; 2], vertex.random(PAIRS, 2)),
-                (false, false) => ([unused; 2], unused),
-            };
+        let smooth = vertex.is_smooth();
+        let chance = survives_by_chance || vertex.chooses_lobes();
+        let [light, direction, (lobe, roulette)] = match (smooth && draws_one(scene), smooth, chance) {
+            (true, _, true) => vertex.randoms(PAIRS, [0, 1, 2]),
+            (true, _, false) => {
+                let [light, direction] = vertex.randoms(PAIRS, [0, 1]);
+                [light, direction, unused]
+            }
+            (false, true, true) => {
+                let [direction, lobe] = vertex.randoms(PAIRS, [1, 2]);
+                [unused, direction, lobe]
+            }
+            (false, true, false) => [unused, vertex.random(PAIRS, 1), unused],
+            (false, false, true) => [unused, unused, vertex.random(PAIRS, 2)],
+            (false, false, false) => [unused; 3],
+        };
         if let Some(c) = vertex.connect_one(scene, light) {
             out.shadow(0, c.lanes, c.ray, c.radiance);
         }

@@ -160,8 +160,8 @@ impl<'a> Paths<'a> {
         let Self { rays, places, octants, before, len, .. } = self;
         before.clear();
         before.extend_from_slice(&places[..*len]);
-        let order = octants.order(before.iter().map(|&place| &rays[place as usize]));
-        for (place, &slot) in places[..*len].iter_mut().zip(order) {
+        octants.sort(before.iter().map(|&place| &rays[place as usize]));
+        for (place, &slot) in places[..*len].iter_mut().zip(octants.order()) {
             *place = before[slot as usize];
         }
         self.fill_up();
@@ -180,14 +180,19 @@ impl<'a> Octants<'a> {
         Self { keys: BumpVec::new_in(arena), sorter: Sorter::new(arena, 8) }
     }
 
-    /// The numbers of rays, ordered by octant and within each as they come, and perhaps more behind them. A ray is a
-    /// row: origin, direction, and what else there is.
-    pub(super) fn order<'r>(&mut self, rays: impl Iterator<Item = &'r f32x8>) -> &[u32] {
+    /// Orders rays. One is a row: origin, direction, and what else there is.
+    pub(super) fn sort<'r>(&mut self, rays: impl Iterator<Item = &'r f32x8>) {
         let Self { keys, sorter } = self;
         keys.clear();
         keys.extend(rays.map(|row| row.lt(f32x8::zero()).to_bitmask() >> 3 & 7));
         sorter.sort(keys);
-        sorter.order()
+    }
+
+    /// The numbers of the rays that were sorted last, by octant and within each as they came; a packet of the last of
+    /// them, and perhaps more behind that.
+    #[inline]
+    pub(super) fn order(&self) -> &[u32] {
+        self.sorter.order()
     }
 }
 

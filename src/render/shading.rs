@@ -5,7 +5,7 @@ use super::group::{Group, Outputs};
 use super::integrator::Integrator;
 use super::layers::Layers;
 use super::rows::{Hits, Packet, Paths, fill};
-use super::vertex::Vertex;
+use super::vertex::{Kept, Vertex};
 use crate::compile::Scene;
 use crate::film::sums::Quad;
 use crate::material::MaterialId;
@@ -53,9 +53,10 @@ impl<I: Integrator> Shading<'_, '_, I> {
             return;
         }
         let (tuv, primitive) = hits.packet(&at);
+        let kept = layers.as_ref().filter(|layers| layers.draws()).map(|_| Kept::new());
         let mut vertex = Vertex::new(scene, path, (org, dir), tuv, primitive, MaterialId(key));
-        if layers.as_ref().is_some_and(|layers| layers.draws()) {
-            vertex.keep_randoms();
+        if let Some(kept) = &kept {
+            vertex.keep_randoms(kept);
         }
         integrator.shade(scene, &vertex, &mut group);
         if let Some(layers) = layers {

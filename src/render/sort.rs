@@ -10,7 +10,7 @@ const FEW: usize = 16;
 
 /// A stable sort of slots by a small key.
 pub(super) struct Sorter<'a> {
-    /// Slots, grouped by key, ascending within a group; a packet behind them may hold anything.
+    /// Slots, grouped by key, ascending within a group; a packet behind them holds the last.
     order: BumpVec<'a, u32>,
     /// Where each key's run ends.
     ends: BumpVec<'a, u32>,
@@ -31,7 +31,13 @@ impl<'a> Sorter<'a> {
         if self.order.len() < room {
             self.order.resize(room, 0);
         }
-        if self.keys <= FEW { self.sort_by_passes(keys) } else { self.sort_by_counting(keys) }
+        if self.keys <= FEW {
+            self.sort_by_passes(keys);
+        } else {
+            self.sort_by_counting(keys);
+        }
+        let last = keys.len().checked_sub(1).map_or(0, |last| self.order[last]);
+        self.order[keys.len()..room].fill(last);
     }
 
     /// The slots of one key after the other: a slot waits for none before it, as it would for a counter.
@@ -70,7 +76,7 @@ impl<'a> Sorter<'a> {
         }
     }
 
-    /// The slots that were sorted last, and perhaps more behind them.
+    /// The slots that were sorted last, a packet of the last of them, and perhaps more behind that.
     pub(super) fn order(&self) -> &[u32] {
         &self.order
     }

@@ -29,10 +29,38 @@ pub(super) struct Vertex<'s, R: Real> {
     /// cos θ_o as the surface stores its normal.
     cos_o: R,
     appearance: Appearance<'s, R>,
-    /// Is it the first of a path, and will somebody ask for [`first_random`](Self::first_random)?
-    keeps: bool,
-    /// First pairs that have been drawn.
-    kept: [Cell<Option<Pair<R>>>; FIRST],
+    /// Where it is the first of a path, and somebody will ask for [`first_random`](Self::first_random).
+    kept: Option<&'s Kept<R>>,
+}
+
+/// First pairs that have been drawn.
+#[derive(Clone, Debug)]
+pub(super) struct Kept<R: Real> {
+    pairs: [Cell<Pair<R>>; FIRST],
+    /// Which of them: bits.
+    drawn: Cell<u32>,
+}
+
+impl<R: Real> Kept<R> {
+    /// None.
+    #[inline]
+    pub(super) fn new() -> Self {
+        Self { pairs: std::array::from_fn(|_| Cell::new((R::zero(), R::zero()))), drawn: Cell::new(0) }
+    }
+
+    #[inline]
+    fn keep(&self, index: u32, pair: Pair<R>) {
+        if let Some(kept) = self.pairs.get(index as usize) {
+            kept.set(pair);
+            self.drawn.set(self.drawn.get() | 1 << index);
+        }
+    }
+
+    #[inline]
+    fn get(&self, index: u32) -> Option<Pair<R>> {
+        let drawn = self.drawn.get() >> index & 1 != 0;
+        self.pairs.get(index as usize).filter(|_| drawn).map(Cell::get)
+    }
 }
 
 /// A pair of random numbers.
@@ -83,21 +111,20 @@ impl<'s, R: Real> Vertex<'s, R> {
         };
         let point = Point { wo, uv: surface.uv, tangents };
         let appearance = scene.materials.appearance(material, &scene.textures, &point);
-        let (keeps, kept, cos_o) = (false, Default::default(), wo.z);
-        Self { path, from: org, dir, t, material, primitive, surface, cos_o, appearance, keeps, kept }
+        Self { path, from: org, dir, t, material, primitive, surface, cos_o: wo.z, appearance, kept: None }
     }
 
     /// Somebody will ask for [`first_random`](Self::first_random) of this vertex, the first of its paths.
     #[inline]
-    pub(super) fn keep_randoms(&mut self) {
-        self.keeps = true;
+    pub(super) fn keep_randoms(&mut self, kept: &'s Kept<R>) {
+        self.kept = Some(kept);
     }
 
     /// Random numbers: the `index`-th of at most `count` pairs that the integrator uses at a vertex.
     #[inline]
     pub(super) fn random(&self, count: u32, index: u32) -> Pair<R> {
         // Drawn together, two pairs take hardly longer than one.
-        if self.keeps && index > 0 && self.kept[0].get().is_none() {
+        if index > 0 && self.kept.is_some_and(|kept| kept.get(0).is_none()) {
             let [pair, _] = self.randoms(count, [index, 0]);
             return pair;
         }
@@ -109,12 +136,8 @@ impl<'s, R: Real> Vertex<'s, R> {
     #[inline]
     pub(super) fn randoms<const N: usize>(&self, count: u32, indices: [u32; N]) -> [Pair<R>; N] {
         let pairs = self.path.randoms(count, indices);
-        if self.keeps {
-            for (index, pair) in indices.into_iter().zip(pairs) {
-                if let Some(kept) = self.kept.get(index as usize) {
-                    kept.set(Some(pair));
-                }
-            }
+        if let Some(kept) = self.kept {
+            (0..N).for_each(|i| kept.keep(indices[i], pairs[i]));
         }
         pairs
     }
@@ -122,7 +145,7 @@ impl<'s, R: Real> Vertex<'s, R> {
     /// One of the first two pairs of a path's first vertex, whatever its integrator uses them for.
     #[inline]
     pub(super) fn first_random(&self, index: u32) -> Pair<R> {
-        let kept = self.kept.get(index as usize).and_then(Cell::get);
+        let kept = self.kept.and_then(|kept| kept.get(index));
         kept.unwrap_or_else(|| self.path.random(FIRST as u32, index))
     }
 
@@ -274,4 +297,73 @@ pub(super) fn environment<R: Real>(
 fn mis_weight<R: Real>(pdf: R, light_pdf: R) -> R {
     let only_way = pdf.equal(R::splat(f32::INFINITY));
     R::select(only_way, R::one(), power_heuristic(pdf, light_pdf))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::hint::black_box;
+
+    use glam::{DAffine3, Vec3};
+
+    use super::*;
+    use crate::compile::compile;
+    use crate::scene::{Geometry, Material, MaterialIndex, SceneDescription, Shape};
+
+    #[test]
+    fn pairs_that_light_has_drawn_are_those_that_layers_would_draw() {
+        let disk = Shape {
+            name: String::new(),
+            geometry: Geometry::Disk,
+            to_world: DAffine3::IDENTITY,
+            flip_normals: false,
+            material: MaterialIndex(0),
+            radiance: None,
+        };
+        let description = SceneDescription {
+            shapes: vec![disk],
+            materials: vec![Material::default()],
+            ..Default::default()
+        };
+        let scene = compile(&description).expect("it compiles");
+        let line = (Vec3::Z.into(), Vec3::NEG_Z.into());
+        let own = [0, 1].map(|index| Path::<f32>::start(7, 3).random(FIRST as u32, index));
+        // The pairs that an integrator asks for, and which of the first two are there afterwards.
+        type Ask = fn(&Vertex<'_, f32>);
+        let asks: [(Ask, [bool; 2]); 5] = [
+            (|_| {}, [false, false]),
+            (
+                |vertex| {
+                    black_box(vertex.random(3, 0));
+                },
+                [true, false],
+            ),
+            (
+                |vertex| {
+                    black_box(vertex.random(3, 2));
+                },
+                [true, false],
+            ),
+            (
+                |vertex| {
+                    black_box(vertex.randoms(3, [1, 2]));
+                },
+                [false, true],
+            ),
+            (
+                |vertex| {
+                    black_box(vertex.randoms(3, [0, 1, 2]));
+                },
+                [true, true],
+            ),
+        ];
+        for (number, (ask, there)) in asks.into_iter().enumerate() {
+            let kept = Kept::new();
+            let path = Path::<f32>::start(7, 3);
+            let mut vertex = Vertex::new(&scene, path, line, (1.0, 0.0, 0.0), 0, MaterialId(0));
+            vertex.keep_randoms(&kept);
+            ask(&vertex);
+            assert_eq!([0, 1].map(|index| kept.get(index).is_some()), there, "{number}");
+            assert_eq!([0, 1].map(|index| vertex.first_random(index)), own, "{number}");
+        }
+    }
 }

@@ -25,7 +25,7 @@ use crate::bvh::Tracer;
 use crate::compile::Scene;
 use crate::film::{
     Samples, Tile,
-    sums::{Quad, quads},
+    sums::{Quad, WEIGHT, place, quads},
 };
 use crate::geometry::PrimitiveId;
 use crate::simd::{Bits, LANES, f32x8, u32x8};
@@ -91,7 +91,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             keys: BumpVec::new_in(arena),
             sorter: Sorter::new(arena, scene.materials.len() + 1),
             out: Outputs {
-                quads: lit.div_ceil(4),
+                quads: quads(lit),
                 added: BumpVec::new_in(arena),
                 connections: Connections::new(arena),
                 next: Paths::new(arena),
@@ -101,7 +101,7 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
             points: BumpVec::new_in(arena),
             weights: BumpVec::new_in(arena),
             sums: BumpVec::new_in(arena),
-            quads: if channels > lit { lit.div_ceil(4) } else { quads(channels) },
+            quads: quads(lit),
             probe: None,
         }
     }
@@ -137,7 +137,8 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
         self.take(&pixels, &(sample..sample + 1), &mut Statistics::default());
         let layers = self.layers.as_ref().map_or(&[][..], |layers| layers.rows(0..1));
         let layers = layers.iter().flat_map(|eight| eight.to_array());
-        self.sums.iter().flatten().copied().chain(layers).take(self.channels).collect()
+        let row: Vec<f32> = self.sums.iter().flatten().copied().chain(layers).collect();
+        (0..self.channels).map(|channel| row[place(channel)]).collect()
     }
 
     /// What one sample of a tile does.
@@ -165,12 +166,9 @@ impl<'a, I: Integrator> Wavefront<'a, I> {
     fn clear(&mut self, len: usize) {
         self.sums.clear();
         self.sums.resize(len * self.quads, [0.0; 4]);
-        match &mut self.layers {
-            Some(layers) => layers.clear(len, self.integrator.begins().then_some(&mut self.sums[..])),
-            None => {
-                let one = self.channels;
-                self.sums.chunks_exact_mut(self.quads).for_each(|row| row[one / 4][one % 4] = 1.0);
-            }
+        self.sums.chunks_exact_mut(self.quads).for_each(|row| row[0][WEIGHT] = 1.0);
+        if let Some(layers) = &mut self.layers {
+            layers.reserve(len);
         }
         self.weights.clear();
     }

@@ -27,6 +27,8 @@ pub const MOST: usize = if ONE_REGISTER { 16 } else { 8 };
 pub trait Eights: Real {
     /// Lanes 8i to 8i + 7.
     fn eight(&self, i: usize) -> f32x8;
+    /// Lanes 8i to 8i + 7 are `f(i)`.
+    fn of_eights(f: impl Fn(usize) -> f32x8) -> Self;
 }
 
 impl Eights for f32x8 {
@@ -34,12 +36,22 @@ impl Eights for f32x8 {
     fn eight(&self, _: usize) -> f32x8 {
         *self
     }
+
+    #[inline(always)]
+    fn of_eights(f: impl Fn(usize) -> f32x8) -> Self {
+        f(0)
+    }
 }
 
 impl Eights for f32x16 {
     #[inline(always)]
     fn eight(&self, i: usize) -> f32x8 {
         self.half(i)
+    }
+
+    #[inline(always)]
+    fn of_eights(f: impl Fn(usize) -> f32x8) -> Self {
+        Self::of_halves([f(0), f(1)])
     }
 }
 

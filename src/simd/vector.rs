@@ -112,15 +112,9 @@ impl<R: Real> Vector3<R> {
         Self::select(mask, self, Self::zero())
     }
 
-    /// Component by component, to vectors of other lanes.
+    /// Component by component, to vectors of other lanes too.
     #[inline]
-    pub fn each<S>(self, mut f: impl FnMut(R) -> S) -> Vector3<S> {
-        vector3(f(self.x), f(self.y), f(self.z))
-    }
-
-    /// Component by component.
-    #[inline]
-    pub fn map(self, mut f: impl FnMut(R) -> R) -> Self {
+    pub fn map<S>(self, mut f: impl FnMut(R) -> S) -> Vector3<S> {
         vector3(f(self.x), f(self.y), f(self.z))
     }
 

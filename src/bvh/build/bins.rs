@@ -184,20 +184,15 @@ pub(super) fn cheapest_plane(references: &[Reference], centres: Bounds) -> Optio
 mod tests {
     use super::super::binned::extents;
     use super::*;
-    use crate::geometry::Aabb;
+    use crate::geometry::{Aabb, seeds::Random};
 
     /// Boxes of all sizes here and there.
-    fn boxes(count: usize, seed: u32) -> Vec<Reference> {
-        let mut state = seed;
-        let mut unit = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 8) as f32 / 16_777_216.0
-        };
-        let mut vector = || glam::Vec3::new(unit(), unit(), unit());
+    fn boxes(count: usize, seed: u64) -> Vec<Reference> {
+        let mut random = Random::new(seed);
         (0..count as u32)
             .map(|index| {
-                let (corner, size) = (vector(), [0.0, 0.05, 0.6][index as usize % 3]);
-                let bounds = Aabb::of_points([corner, corner + vector() * size]);
+                let (corner, size) = (random.vector(), [0.0, 0.05, 0.6][index as usize % 3]);
+                let bounds = Aabb::of_points([corner, corner + random.vector() * size]);
                 Reference::new(bounds, index, 0)
             })
             .collect()

@@ -189,7 +189,7 @@ impl Sweep {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Aabb;
+    use crate::geometry::{Aabb, seeds::Random};
 
     /// Areas times numbers, where so many go left in the order of the centres along an axis.
     fn cost(references: &[Reference], axis: usize, left_count: usize) -> f32 {
@@ -205,18 +205,13 @@ mod tests {
 
     #[test]
     fn no_other_split_between_centres_is_cheaper() {
-        let mut state = 7u32;
-        let mut unit = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 8) as f32 / 16_777_216.0
-        };
-        let mut vector = || glam::Vec3::new(unit(), unit(), unit());
+        let mut random = Random::new(7);
         for round in 0..2000 {
             let count = 2 + round % (SMALL - 1);
             let references: Vec<Reference> = (0..count as u32)
                 .map(|index| {
-                    let corner = vector();
-                    let bounds = Aabb::of_points([corner, corner + vector() * [0.02, 0.9][round % 2]]);
+                    let corner = random.vector();
+                    let bounds = Aabb::of_points([corner, corner + random.vector() * [0.02, 0.9][round % 2]]);
                     Reference::new(bounds, index, 0)
                 })
                 .collect();
