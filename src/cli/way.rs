@@ -9,11 +9,11 @@ use crate::{bvh::Way, render::Route};
 pub(super) enum WayName {
     /// Whatever suits each 64 rays
     Chosen,
-    /// Tiles of up to 128 rays from one point into one octant; others as packets
+    /// Tiles of up to 256 rays from one point into one octant; others as packets
     Tile,
-    /// Packets of 8
+    /// Packets of 16
     Packet,
-    /// 16 single rays in turn
+    /// 32 single rays in turn
     Wave,
 }
 
