@@ -132,11 +132,10 @@ mod tests {
 
     #[test]
     fn bits_change_rows_for_columns() {
-        let rows = [0b1000_0001, 0, 0b0110_0000, 0xff, 1, 2, 3, 0b1010_1010];
-        for (row, bits) in rows.into_iter().enumerate() {
-            for (column, turned) in turned(rows).into_iter().enumerate() {
-                assert_eq!(bits >> column & 1, turned >> row & 1, "row {row}, column {column}");
-            }
+        for (row, column) in (0..64).map(|bit| (bit / 8, bit % 8)) {
+            let (mut rows, mut expected) = ([0; 8], [0; 8]);
+            (rows[row], expected[column]) = (1 << column, 1 << row);
+            assert_eq!(turned(rows), expected, "row {row}, column {column}");
         }
     }
 
