@@ -47,7 +47,8 @@ impl Bvh {
                 }
                 Kind::Leaf { first, count } => {
                     tally.leaf(count, 1);
-                    leaves.intersect_block::<ANY>(first, count, || lanes, hit);
+                    let mut nobody = Hit::MISS;
+                    leaves.intersect_blocks::<ANY, f32x8>([(first, count); 2], || lanes, [hit, &mut nobody]);
                     if ANY && hit.t == f32::NEG_INFINITY {
                         return;
                     }

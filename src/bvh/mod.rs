@@ -36,8 +36,8 @@ use std::hint::select_unpredictable;
 
 use glam::Vec3;
 
-use crate::geometry::{Hit, Pencils, PrimitiveId, Ray, Rayx8, Rayx16};
-use crate::simd::{Bits, LANES, Mask8, Mask16, Real, f32x8, f32x16, prefetch, transpose, u32x8};
+use crate::geometry::{Hit, Pencils, PrimitiveId, Ray, RayLanes, Rayx8, Rayx16};
+use crate::simd::{Bits, Eights, LANES, Mask8, Mask16, Real, f32x8, f32x16, prefetch, transpose, u32x8};
 
 /// Slots in a block. A leaf never crosses from one block into the next.
 pub const BLOCK: usize = 8;
@@ -146,17 +146,16 @@ pub trait Leaves {
     /// Where the data of a slot's block begin, to be asked for ahead of time.
     fn address(&self, slot: u32) -> *const u8;
 
-    /// How many blocks' time [`intersect_block`](Leaves::intersect_block) takes for a leaf.
+    /// How many blocks' time [`intersect_blocks`](Leaves::intersect_blocks) takes for a leaf.
     fn blocks(&self, first: u32, count: u32) -> u32;
 
-    /// One ray, which `splat` puts into all lanes, against `count` slots at once: the lanes are primitives.
-    /// More than what was asked for may be tested.
-    fn intersect_block<const ANY: bool>(
+    /// A ray in each eight lanes, each against its own leaf's (first slot, count): the lanes are primitives. More than
+    /// what was asked for may be tested. There are as many rays as `R` has eights; leaves and hits beyond are not looked at.
+    fn intersect_blocks<const ANY: bool, R: Eights>(
         &self,
-        first: u32,
-        count: u32,
-        splat: impl Fn() -> Rayx8,
-        hit: &mut Hit,
+        leaves: [(u32, u32); 2],
+        rays: impl Fn() -> RayLanes<R>,
+        hits: [&mut Hit; 2],
     );
 
     /// One ray, from the scalar kernels.

@@ -54,7 +54,7 @@ impl Run {
     /// The rays of a packet.
     #[inline]
     pub(super) fn packet(&self, packet: usize) -> Rayx8 {
-        self.bundles[packet / 2].half(packet % 2)
+        self.bundles[packet / 2].eight(packet % 2)
     }
 
     /// The rays of a bundle, and which of them are active.

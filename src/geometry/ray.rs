@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use super::triangle;
-use crate::simd::{Real, Vector3, f32x8, f32x16, vector3};
+use crate::simd::{Eights, Real, Vector3, f32x8, f32x16, vector3};
 
 /// A half-open segment org + t·dir, t in (`t_near`, `t_far`], in the space of what it is traced through: the
 /// world, or a group's. `dir` need not be of unit length.
@@ -103,18 +103,20 @@ impl Rayx16 {
         self.t_far.put_quarter(i, rays.t_far.half(half));
         self.margin.put_quarter(i, rays.margin.half(half));
     }
+}
 
-    /// Lanes 0 to 7 or 8 to 15.
+impl<R: Eights> RayLanes<R> {
+    /// Lanes 8i to 8i + 7.
     #[inline(always)]
-    pub fn half(&self, half: usize) -> Rayx8 {
-        let of = |v: &Vector3<f32x16>| vector3(v.x.half(half), v.y.half(half), v.z.half(half));
+    pub fn eight(&self, i: usize) -> Rayx8 {
+        let of = |v: &Vector3<R>| vector3(v.x.eight(i), v.y.eight(i), v.z.eight(i));
         RayLanes {
             org: of(&self.org),
             dir: of(&self.dir),
             rdir: of(&self.rdir),
-            t_near: self.t_near.half(half),
-            t_far: self.t_far.half(half),
-            margin: self.margin.half(half),
+            t_near: self.t_near.eight(i),
+            t_far: self.t_far.eight(i),
+            margin: self.margin.eight(i),
         }
     }
 }

@@ -197,7 +197,7 @@ impl<R: Real> TriangleLanes<R> {
         aspect.answer(&aspect.test(margin, ray, active), ray, || self.slabs(ray))
     }
 
-    /// The same, for one ray and a block of triangles: rays that leave a surface cross the planes of those around them
+    /// The same, for one ray to each block of triangles: rays that leave a surface cross the planes of those around them
     /// just before they begin, and what they have certainly behind them is not looked at further.
     #[inline(always)]
     pub fn intersect_ahead(

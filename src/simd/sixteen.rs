@@ -75,7 +75,7 @@ impl f32x16 {
     }
 
     /// Lanes 0 to 7 and 8 to 15.
-    #[inline]
+    #[inline(always)]
     pub fn of_halves([low, high]: [f32x8; 2]) -> Self {
         let (low, high) = (low.to_array(), high.to_array());
         Self::from_fn(|i| if i < 8 { low[i] } else { high[i - 8] })

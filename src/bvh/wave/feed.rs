@@ -8,7 +8,7 @@ use crate::bvh::{
     stream::Ahead,
 };
 use crate::geometry::{Hit, RayLanes, Rayx8};
-use crate::simd::{LANES, Real, Vec3x8, f32x8, transpose, u32x8, vector3};
+use crate::simd::{Eights, LANES, Real, Vec3x8, f32x8, transpose, u32x8, vector3};
 
 /// Ulps of |rdir|·(|org| + |bound|) by which slabs are widened: 3 for the fused form and its constant, 12
 /// for the widening and the rounding of the kernels' own test.
@@ -61,20 +61,18 @@ impl Ready {
         self.0[1][7].to_bits() as usize
     }
 
-    /// The ray itself, in all lanes, for the leaves.
-    #[inline]
-    pub(super) fn splat(&self) -> Rayx8 {
-        let [first, second, third] = &self.0;
-        let splat = |row: &[f32; 8], at: usize| {
-            vector3(f32x8::splat(row[at]), f32x8::splat(row[at + 1]), f32x8::splat(row[at + 2]))
-        };
+    /// The rays themselves, each in eight lanes, for the leaves: as many as `R` has eights.
+    #[inline(always)]
+    pub(super) fn lanes<R: Eights>(rays: [&Self; 2]) -> RayLanes<R> {
+        let splat = |row: usize, at: usize| R::of_eights(|i| f32x8::splat(rays[i].0[row][at]));
+        let vector = |row: usize, at: usize| vector3(splat(row, at), splat(row, at + 1), splat(row, at + 2));
         RayLanes {
-            org: splat(second, 3),
-            dir: splat(third, 0),
-            rdir: splat(third, 3),
-            t_near: f32x8::splat(second[6]),
-            t_far: f32x8::splat(first[7]),
-            margin: f32x8::splat(third[6]),
+            org: vector(1, 3),
+            dir: vector(2, 0),
+            rdir: vector(2, 3),
+            t_near: splat(1, 6),
+            t_far: splat(0, 7),
+            margin: splat(2, 6),
         }
     }
 

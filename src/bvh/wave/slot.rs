@@ -3,7 +3,7 @@
 use super::feed::Ready;
 use crate::bvh::{Child, Leaves, Node, STACK};
 use crate::geometry::{Hit, PrimitiveId};
-use crate::simd::{Bits, Mask, Real, compress, f32x8, sort_descending, u32x8};
+use crate::simd::{Bits, Mask, Real, compress, f32x8, f32x16, sort_descending, u32x8};
 
 /// The ray, what it has found, and what waits for it.
 #[repr(C, align(64))]
@@ -18,6 +18,13 @@ pub(super) struct Slot {
     keys: [u32; STACK + 16],
     /// The children. The lowest entry is the end of the ray.
     children: [u32; STACK + 8],
+}
+
+/// Which of a node's boxes a ray enters, and where.
+#[derive(Clone, Copy)]
+pub(super) struct Met {
+    low: f32x8,
+    enters: u8,
 }
 
 /// Bits of a key that say which of a node's children it belongs to.
@@ -59,9 +66,9 @@ impl Slot {
         self.child = Child::from_word(self.children[self.top as usize]);
     }
 
-    /// Tests the boxes of a node and moves to the nearest child, or to what waits.
-    #[inline]
-    pub(super) fn step<const ANY: bool>(&mut self, node: &Node) {
+    /// Tests the boxes of a node.
+    #[inline(always)]
+    pub(super) fn meet(&self, node: &Node) -> Met {
         let mut low = f32x8::splat(self.ray.t_near());
         let mut high = f32x8::splat(self.hit.t);
         for axis in 0..3 {
@@ -75,7 +82,12 @@ impl Slot {
             low = low.max(one.min(other));
             high = high.min(one.max(other));
         }
-        let enters = low.le(high).to_bitmask() as u8;
+        Met { low, enters: low.le(high).to_bitmask() as u8 }
+    }
+
+    /// Moves to the nearest of the node's children that the ray enters, or to what waits.
+    #[inline(always)]
+    pub(super) fn enter<const ANY: bool>(&mut self, node: &Node, Met { low, enters }: Met) {
         let count = enters.count_ones();
         let top = self.top as usize;
         let children = if ANY {
@@ -91,18 +103,26 @@ impl Slot {
         self.child = Child::from_word(self.children[self.top as usize]);
     }
 
-    /// Tests a leaf and moves to what waits. Returns whether the ray has come to its end.
+    /// Tests two leaves, each by the slot that is at it.
     // Left to itself the compiler calls it, and a call between two rays costs them their overlap.
     #[inline(always)]
-    pub(super) fn test<const ANY: bool, L: Leaves>(&mut self, leaves: &L, first: u32, count: u32) {
-        let ray = &self.ray;
-        leaves.intersect_block::<ANY>(first, count, || ray.splat(), &mut self.hit);
-        self.pop::<ANY>();
+    pub(super) fn test_two<const ANY: bool, L: Leaves>([one, other]: [&mut Self; 2], leaves: &L) {
+        let at = [one.child.slots(), other.child.slots()];
+        let rays = [&one.ray, &other.ray];
+        let hits = [&mut one.hit, &mut other.hit];
+        leaves.intersect_blocks::<ANY, f32x16>(at, || Ready::lanes(rays), hits);
+    }
+
+    /// Tests a leaf.
+    #[inline(always)]
+    pub(super) fn test<const ANY: bool, L: Leaves>(&mut self, leaves: &L) {
+        let (at, rays, mut nobody) = ([self.child.slots(); 2], [&self.ray; 2], Hit::MISS);
+        leaves.intersect_blocks::<ANY, f32x8>(at, || Ready::lanes(rays), [&mut self.hit, &mut nobody]);
     }
 
     /// Moves to the nearest child that waits and is near enough.
-    #[inline]
-    fn pop<const ANY: bool>(&mut self) {
+    #[inline(always)]
+    pub(super) fn pop<const ANY: bool>(&mut self) {
         let mut top = self.top as usize;
         if ANY {
             top -= 1;

@@ -7,7 +7,7 @@ use crate::bvh::{BLOCK, HitLanes, Hitx16};
 use crate::compile::{corners::Corners, surfaces::Surfaces};
 use crate::geometry::{Aspect, AspectColumns, RayLanes, Rayx16, Triangle, TriangleLanes};
 use crate::simd::{
-    Bits, Mask, Mask8, Mask16, ONE_REGISTER, Real, Vector3, f32x8, f32x16, u32x8, u32x16, vector3,
+    Bits, Eights, Mask, Mask8, Mask16, ONE_REGISTER, Real, Vector3, f32x8, f32x16, u32x8, u32x16, vector3,
 };
 
 /// Memory is asked for the vertices of triangles so many blocks on, and for their numbers twice as far.
@@ -62,6 +62,21 @@ impl TriangleBlock {
         TriangleLanes { v0: rows(&self.v0), v1: rows(&self.v1), v2: rows(&self.v2), edges: self.edges.into() }
     }
 
+    /// Blocks, each in eight lanes: as many as `R` has eights.
+    #[inline(always)]
+    pub(super) fn eights<R: Eights>(blocks: [&Self; 2]) -> TriangleLanes<R> {
+        let rows = |of: fn(&Self) -> &[[f32; 8]; 3]| {
+            let row = |axis: usize| R::of_eights(|i| of(blocks[i])[axis].into());
+            vector3(row(0), row(1), row(2))
+        };
+        TriangleLanes {
+            v0: rows(|block| &block.v0),
+            v1: rows(|block| &block.v1),
+            v2: rows(|block| &block.v2),
+            edges: R::of_eights(|i| blocks[i].edges.into()),
+        }
+    }
+
     /// The triangle in a lane, in all lanes.
     #[inline]
     pub(super) fn splat<R: Real>(&self, lane: usize) -> TriangleLanes<R> {
@@ -110,7 +125,7 @@ impl TriangleBlock {
             }
         } else {
             for half in 0..2 {
-                let limited = RayLanes { t_far: hit.t.half(half), ..ray.half(half) };
+                let limited = RayLanes { t_far: hit.t.half(half), ..ray.eight(half) };
                 let Some((found, t, u, v)) = aspects.intersect(lane, margin, &limited, Mask8::splat(true))
                 else {
                     break;
