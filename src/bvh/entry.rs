@@ -13,6 +13,8 @@ use crate::simd::{Mask, Mask8, Mask16, Real, Vec3x16, f32x8, f32x16};
 /// Ulps of a coordinate by which the box around segments is wider than they are, against the rounding of
 /// their ends and of the slab tests that decide.
 const MARGIN: f32 = 16.0 * f32::EPSILON;
+/// How much farther segments reach: distances may have so few bits that each operation is off by one of them.
+const LEAST: f32 = 1e-43;
 
 /// The box around segments, as it grows.
 pub(super) struct Segments {
@@ -27,7 +29,7 @@ impl Segments {
 
     #[inline]
     pub(super) fn add(&mut self, rays: &Rayx16, active: Mask16) {
-        for t in [rays.t_near.min(f32x16::zero()), rays.t_far] {
+        for t in [rays.t_near.min(f32x16::zero()), rays.t_far + f32x16::splat(LEAST)] {
             let end = rays.org + rays.dir.scale(t);
             self.low = Vec3x16::select(active, end.min(self.low), self.low);
             self.high = Vec3x16::select(active, end.max(self.high), self.high);

@@ -257,6 +257,37 @@ mod tests {
         assert!(hits > 10_000, "{hits}");
     }
 
+    /// Just so far as the triangle they hit, where a distance has so few bits that each operation may lose one.
+    #[test]
+    fn the_ways_agree_where_distances_vanish() {
+        let mut random = Random::new(21);
+        let mut hits = 0;
+        for (scale, length) in [(1e-3, 3e38), (1e-6, 1e38), (1e-9, 1e34), (1e-20, 1e24)] {
+            let triangles: Vec<_> =
+                triangles().into_iter().map(|corners| corners.map(|v| v * scale)).collect();
+            let scene = scene_of(&triangles).unwrap();
+            // Few at a time: no neighbour's segment makes up for what is lost of one.
+            for count in [1, 2, 40].into_iter().cycle().take(300) {
+                let org = random.vector() * scale;
+                let [a, b, c] = triangles[random.below(triangles.len())];
+                let rays: Vec<Ray32> = (0..count)
+                    .map(|_| {
+                        let (s, t) = (random.unit(), random.unit());
+                        let dir = (a + (b - a) * (s * (1.0 - t)) + (c - a) * (s * t) - org) / scale;
+                        let ray = Ray32::new(org, dir / dir.abs().max_element() * length, 0.0, f32::INFINITY);
+                        let t_far = scene.closest_hit(&ray.ray(), &mut Traversal::new(())).t;
+                        Ray32 { t_far, ..ray }
+                    })
+                    .filter(Ray32::is_valid)
+                    .collect();
+                let found = compare(&scene, &rays, u64::MAX, &answers);
+                assert_eq!(found.mismatches, 0, "{scale} {length}: {:?}", found.exhibit);
+                hits += found.hits;
+            }
+        }
+        assert!(hits > 10_000, "{hits}");
+    }
+
     /// A wave that does not see one triangle, wherever it is in the scene.
     #[test]
     fn a_fault_is_found_and_made_small() {

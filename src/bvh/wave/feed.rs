@@ -13,6 +13,8 @@ use crate::simd::{Eights, LANES, Real, Vec3x8, f32x8, transpose, u32x8, vector3}
 /// Ulps of |rdir|·(|org| + |bound|) by which slabs are widened: 3 for the fused form and its constant, 12
 /// for the widening and the rounding of the kernels' own test.
 const MARGIN: f32 = 8.0 * f32::EPSILON;
+/// The same for distances of so few bits that each operation may be off by one of them.
+const LEAST: f32 = 1e-43;
 /// Greatest magnitude of a reciprocal direction in box tests.
 const STEEPEST: f32 = 1e18;
 
@@ -89,8 +91,9 @@ impl Ready {
         let axis = |rdir: f32x8, inv: f32x8, org: f32x8, reach: f32x8| {
             let room = f32x8::splat(MARGIN) * inv * (org.abs() + reach);
             // A slab that is met too early because its reciprocal was cut off stays open until then.
-            let open = f32x8::select(rdir.lt(f32x8::zero()), -last, last);
-            let room = room + open.only(f32x8::splat(STEEPEST).lt(rdir.abs()));
+            let steep = f32x8::splat(STEEPEST).lt(rdir.abs());
+            let open = f32x8::select(steep, last, f32x8::splat(LEAST));
+            let room = room + f32x8::select(rdir.lt(f32x8::zero()), -open, open);
             // Nothing is moved where there is all the room: a difference of infinities would be nowhere.
             let shift = -(org * inv).only(room.abs().lt(f32x8::splat(f32::INFINITY)));
             (shift - room, shift + room)
