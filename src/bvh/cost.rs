@@ -29,7 +29,7 @@ impl Cost {
     pub(super) const FAR: f32 = 2.0;
     /// How much more runs of occlusion rays cost together: rays end one by one, and those that are left go on in
     /// lanes of their own.
-    pub(super) const OCCLUSION: f32 = 1.4;
+    pub(super) const OCCLUSION: f32 = 1.8;
     /// A ray on its own, its nodes, and its blocks.
     pub(super) const RAY: Self = Self(50.0);
     pub(super) const RAY_NODE: Self = Self(28.0);

@@ -50,19 +50,17 @@ impl Bvh {
                 Kind::Inner(index) => {
                     let node = &self.nodes[index as usize];
                     (0..mask.count_ones()).for_each(|_| tally.node(BUNDLE as u32));
-                    let (candidates, enters, distances) = all.children_ahead(node, end);
+                    let (candidates, enters, distances) = all.children_and_distances(node, end);
                     let enters = enters.to_array();
                     let mut candidates = candidates.to_bitmask();
-                    let known = if pencils.is_some() { distances.ahead.to_bitmask() } else { 0 };
                     cost += Cost::TILE_NODE + Cost::TILE_CHILD * candidates.count_ones();
                     let bottom = top;
                     while candidates != 0 {
                         let place = candidates.trailing_zeros() as usize;
                         candidates &= candidates - 1;
-                        let meets = if known >> place & 1 != 0 {
-                            beams.beams_ahead(&distances, place, farthest)
-                        } else {
-                            beams.beams(node, place, farthest)
+                        let meets = match pencils {
+                            Some(_) => beams.beams_from_one(&distances, place, farthest),
+                            None => beams.beams(node, place, farthest),
                         };
                         let mut mask = mask & meets.to_bitmask();
                         let child = node.children[place];
