@@ -2,6 +2,7 @@
 //! one.
 
 mod accept;
+mod by_block;
 mod triangle_block;
 
 use rayon::prelude::*;
@@ -14,7 +15,7 @@ use crate::geometry::{
     AspectColumns, Canonical, Hit, Pencils, PrimitiveId, Ray, RayLanes, Rayx8, Rayx16, Sphere, SphereLanes,
     Triangle,
 };
-use crate::simd::{Bits, Eights, LANES, Mask, Mask8, Mask16, Real, Vector3, f32x8, f32x16};
+use crate::simd::{Bits, Eights, Mask, Mask8, Mask16, Real, Vector3, f32x8, f32x16};
 
 /// Classes of references, in the order of their blocks.
 pub(super) const TRIANGLE: u8 = 0;
@@ -125,35 +126,6 @@ impl Primitives {
         }
         self.instances.brute_force(ray, &mut hit);
         if hit.primitive == PrimitiveId::NONE { Hit::MISS } else { hit }
-    }
-
-    /// A leaf that is not of triangles, or goes with one that is not: out of the way, and by value, so that the ray and
-    /// the hits of those that are stay in registers.
-    #[cold]
-    #[inline(never)]
-    fn intersect_rarely<const ANY: bool>(&self, first: u32, count: u32, ray: Rayx8, mut hit: Hit) -> Hit {
-        match self.place(first) {
-            (TRIANGLE, block, _) => hit = self.intersect_carefully::<ANY>(block, ray, hit),
-            (INSTANCE, block, lane) => {
-                let slot = block * BLOCK + lane;
-                self.instances.intersect_alone::<ANY>(slot, count as usize, &ray.lane(0), &mut hit);
-            }
-            _ => self.intersect_single::<ANY>(first, count, &ray.lane(0), &mut hit),
-        }
-        hit
-    }
-
-    /// A block of triangles of which one has an edge next to the ray.
-    #[cold]
-    #[inline(never)]
-    fn intersect_carefully<const ANY: bool>(&self, block: usize, ray: Rayx8, mut hit: Hit) -> Hit {
-        let ray = RayLanes { t_far: f32x8::splat(hit.t), ..ray };
-        let (found, t, u, v) = self.triangles[block].lanes().intersect(&ray, Mask8::splat(true));
-        for lane in (0..BLOCK).filter(|&lane| found.lane(lane)) {
-            let id = self.triangle_ids[block * BLOCK + lane];
-            accept_single::<ANY>(&mut hit, (t.lane(lane), u.lane(lane), v.lane(lane)), id);
-        }
-        hit
     }
 
     /// Rays in lanes against the primitives of a leaf; `instance` tests the one in a slot.
@@ -333,41 +305,7 @@ impl Leaves for Primitives {
         rays: impl Fn() -> RayLanes<R>,
         hits: [&mut Hit; 2],
     ) {
-        let at = leaves.map(|(first, _)| first as usize / BLOCK);
-        let (Some(one), Some(other)) = (self.triangles.get(at[0]), self.triangles.get(at[1])) else {
-            for ((i, hit), (first, count)) in hits.into_iter().enumerate().zip(leaves).take(R::LANES / LANES)
-            {
-                *hit = self.intersect_rarely::<ANY>(first, count, rays().eight(i), *hit);
-            }
-            return;
-        };
-        // The other triangles of a block are hit or missed as truly as the leaf's: no lane is masked.
-        let (lanes, every) = (TriangleBlock::eights::<R>([one, other]), R::Mask::splat(true));
-        let rays = RayLanes { t_far: R::of_eights(|i| f32x8::splat(hits[i].t)), ..rays() };
-        let aspect = lanes.aspect(rays.org);
-        let margin = aspect.margin(lanes.edges, rays.margin);
-        let Some((found, t, u, v)) = lanes.intersect_ahead(&aspect, margin, &rays, every) else {
-            for ((i, hit), block) in hits.into_iter().enumerate().zip(at).take(R::LANES / LANES) {
-                *hit = self.intersect_carefully::<ANY>(block, rays.eight(i), *hit);
-            }
-            return;
-        };
-        let mut found = found.to_bitmask();
-        if ANY {
-            for (i, hit) in hits.into_iter().enumerate().take(R::LANES / LANES) {
-                if found >> (i * LANES) & 0xff != 0 {
-                    hit.t = f32::NEG_INFINITY;
-                }
-            }
-            return;
-        }
-        while found != 0 {
-            let lane = found.trailing_zeros() as usize % R::LANES;
-            found &= found - 1;
-            let which = lane / LANES;
-            let id = self.triangle_ids[at[which] * BLOCK + lane % LANES];
-            accept_single::<ANY>(hits[which], (t.lane(lane), u.lane(lane), v.lane(lane)), id);
-        }
+        self.rays_against_blocks::<ANY, R>(leaves, rays, hits);
     }
 
     #[inline]
