@@ -288,6 +288,29 @@ mod tests {
         assert!(hits > 10_000, "{hits}");
     }
 
+    /// Numerators that are finite and a determinant that is not: t is 0, or where the triangle's box begins.
+    #[test]
+    fn the_ways_agree_where_determinants_overflow() {
+        let mut random = Random::new(31);
+        let mut hits = 0;
+        for length in [1e37, 3e37, 6e37, 1e38, 1.5e38].into_iter().cycle().take(200) {
+            let mut triangle = || {
+                let v = random.vector();
+                [v, v + random.vector() * 3.0, v + random.vector() * 3.0]
+            };
+            let scene = scene_of(&[(); 8].map(|()| triangle())).unwrap();
+            for _ in 0..200 {
+                let (org, dir) = (random.vector(), random.vector());
+                let ray = Ray32::new(org, dir / dir.abs().max_element() * length, 0.0, f32::INFINITY);
+                // Alone: where a neighbour is in doubt, both are asked about with more care.
+                let found = compare(&scene, &[ray], u64::MAX, &answers);
+                assert_eq!(found.mismatches, 0, "{length}: {:?}", found.exhibit);
+                hits += found.hits;
+            }
+        }
+        assert!(hits > 5000, "{hits}");
+    }
+
     /// A wave that does not see one triangle, wherever it is in the scene.
     #[test]
     fn a_fault_is_found_and_made_small() {
