@@ -332,11 +332,11 @@ mod tests {
             let (same, same_nearest, distances) = all.children_and_distances(&node, t_far);
             assert_eq!(same.to_bitmask(), children.to_bitmask());
             assert_eq!(same_nearest.to_array(), nearest.to_array());
-            for place in 0..LANES {
+            for (place, bounds) in boxes.iter().enumerate() {
                 let exact = all.rays(&node, place, &rays, f32x8::splat(t_far));
                 let lanes = beams.beams(&node, place, f32x16::splat(t_far)).to_bitmask();
                 let from_one = beams.beams_from_one(&distances, place, f32x16::splat(t_far)).to_bitmask();
-                let within = boxes[place].contains(Aabb::of_points([rays.lane(0).org]));
+                let within = bounds.contains(Aabb::of_points([rays.lane(0).org]));
                 for lane in (0..LANES).filter(|&lane| exact.lane(lane)) {
                     entered += 1;
                     let around = 1 << lane | 1 << ((lane + LANES - 1) % LANES);

@@ -288,6 +288,54 @@ mod tests {
         assert!(hits > 10_000, "{hits}");
     }
 
+    /// Numerators that are finite and a determinant that is not: t is 0, or where the triangle's box begins.
+    #[test]
+    fn the_ways_agree_where_determinants_overflow() {
+        let mut random = Random::new(31);
+        let mut hits = 0;
+        for length in [1e37, 3e37, 6e37, 1e38, 1.5e38].into_iter().cycle().take(200) {
+            let mut triangle = || {
+                let v = random.vector();
+                [v, v + random.vector() * 3.0, v + random.vector() * 3.0]
+            };
+            let scene = scene_of(&[(); 8].map(|()| triangle())).unwrap();
+            for _ in 0..200 {
+                let (org, dir) = (random.vector(), random.vector());
+                let ray = Ray32::new(org, dir / dir.abs().max_element() * length, 0.0, f32::INFINITY);
+                // Alone: where a neighbour is in doubt, both are asked about with more care.
+                let found = compare(&scene, &[ray], u64::MAX, &answers);
+                assert_eq!(found.mismatches, 0, "{length}: {:?}", found.exhibit);
+                hits += found.hits;
+            }
+        }
+        assert!(hits > 5000, "{hits}");
+    }
+
+    /// Of a tile, all rays but one hit a wall nearby; that one begins behind it and sees another. Whichever bundle it is put
+    /// into, each has its turn.
+    #[test]
+    fn the_ways_agree_where_one_ray_of_a_tile_sees_farther() {
+        let corner = |i: usize, z: f32| Vec3::new((i % 17) as f32, (i / 17) as f32, 16.0) * (z / 16.0);
+        let wall = |z: f32| {
+            (0..16 * 17).filter(|i| i % 17 < 16).flat_map(move |i| {
+                let [a, b, c, d] = [i, i + 1, i + 18, i + 17].map(|i| corner(i, z));
+                [[a, b, c], [a, c, d]]
+            })
+        };
+        let scene = scene_of(&wall(1.0).chain(wall(100.0)).collect::<Vec<_>>()).unwrap();
+        let ray = |i: usize, t_near: f32| {
+            let at = |i: usize| (i as f32 + 0.4) / 16.0;
+            Ray32::new(Vec3::ZERO, Vec3::new(at(i % 16), at(i / 16), 1.0), t_near, f32::INFINITY)
+        };
+        for which in 0..256 {
+            let rays: Vec<Ray32> = (0..256).map(|i| ray(i, if i == which { 2.0 } else { 0.0 })).collect();
+            let far = scene.closest_hit(&rays[which].ray(), &mut Traversal::new(())).t;
+            assert!((99.0..101.0).contains(&far), "{which}: {far}");
+            let found = compare(&scene, &rays, 1, &answers);
+            assert_eq!((found.mismatches, found.hits), (0, 256), "{which}: {:?}", found.exhibit);
+        }
+    }
+
     /// A wave that does not see one triangle, wherever it is in the scene.
     #[test]
     fn a_fault_is_found_and_made_small() {

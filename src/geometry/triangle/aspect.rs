@@ -146,8 +146,9 @@ impl<R: Real> Aspect<R> {
         let sign = tested.det.to_bits() & R::Bits::splat(1 << 31);
         let depth = R::from_bits(self.depth.to_bits() ^ sign);
         let room = self.size(edges) * (edges * R::splat(DEPTH_ULPS)) + R::splat(LEAST);
-        // A sum that overflowed says nothing of its sign.
-        depth.lt(-room) & R::splat(f32::MIN).le(depth) & R::zero().le(ray.t_near)
+        // A sum that overflowed says nothing of its sign, and by an infinite determinant all is divided to 0.
+        let finite = R::splat(f32::MIN).le(depth) & tested.det.abs().le(R::splat(f32::MAX));
+        depth.lt(-room) & finite & R::zero().le(ray.t_near)
     }
 
     /// What is to be said of lanes, if it is certain; `slabs` are those of their boxes.
