@@ -222,6 +222,19 @@ mod tests {
         );
     }
 
+    /// The triangles, so much larger, and a scene of them.
+    fn scaled(scale: f32) -> (Vec<[Vec3; 3]>, Scene) {
+        let triangles: Vec<_> = triangles().into_iter().map(|corners| corners.map(|v| v * scale)).collect();
+        let scene = scene_of(&triangles).unwrap();
+        (triangles, scene)
+    }
+
+    /// A point of a triangle.
+    fn point_of([a, b, c]: [Vec3; 3], random: &mut Random) -> Vec3 {
+        let (s, t) = (random.unit(), random.unit());
+        a + (b - a) * (s * (1.0 - t)) + (c - a) * (s * t)
+    }
+
     /// From farther away than scenes may reach, along directions that are short, long, or of one component that is hardly
     /// there: products and reciprocals overflow, and vanish.
     #[test]
@@ -229,9 +242,7 @@ mod tests {
         let mut random = Random::new(9);
         let mut hits = 0;
         for scale in [1.0, 1e6, 1e12, 1e15, 3e17] {
-            let triangles: Vec<_> =
-                triangles().into_iter().map(|corners| corners.map(|v| v * scale)).collect();
-            let scene = scene_of(&triangles).unwrap();
+            let (triangles, scene) = scaled(scale);
             for away in [1.0, 1e3, 1e8, 1e20] {
                 for length in [1e-44, 1e-40, 1e-38, 1e-30, 1e-20, 1e20, 1e26, 1e30, 1e38] {
                     let org = random.vector() * (scale * away);
@@ -239,10 +250,8 @@ mod tests {
                     // Two tiles from one point, of which the second spreads more.
                     let rays: Vec<Ray32> = (0..256)
                         .map(|i| {
-                            let (s, t) = (random.unit(), random.unit());
-                            let spread = random.vector() * (scale * [0.0, 0.1][i / 128]);
-                            let [a, b, c] = towards;
-                            let target = a + (b - a) * (s * (1.0 - t)) + (c - a) * (s * t) + spread;
+                            let target = point_of(towards, &mut random);
+                            let target = target + random.vector() * (scale * [0.0, 0.1][i / 128]);
                             let dir = (target - org) / (target - org).abs().max_element();
                             Ray32::new(org, dir * length, 0.0, f32::INFINITY)
                         })
@@ -263,17 +272,14 @@ mod tests {
         let mut random = Random::new(21);
         let mut hits = 0;
         for (scale, length) in [(1e-3, 3e38), (1e-6, 1e38), (1e-9, 1e34), (1e-20, 1e24)] {
-            let triangles: Vec<_> =
-                triangles().into_iter().map(|corners| corners.map(|v| v * scale)).collect();
-            let scene = scene_of(&triangles).unwrap();
+            let (triangles, scene) = scaled(scale);
             // Few at a time: no neighbour's segment makes up for what is lost of one.
             for count in [1, 2, 40].into_iter().cycle().take(300) {
                 let org = random.vector() * scale;
-                let [a, b, c] = triangles[random.below(triangles.len())];
+                let towards = triangles[random.below(triangles.len())];
                 let rays: Vec<Ray32> = (0..count)
                     .map(|_| {
-                        let (s, t) = (random.unit(), random.unit());
-                        let dir = (a + (b - a) * (s * (1.0 - t)) + (c - a) * (s * t) - org) / scale;
+                        let dir = (point_of(towards, &mut random) - org) / scale;
                         let ray = Ray32::new(org, dir / dir.abs().max_element() * length, 0.0, f32::INFINITY);
                         let t_far = scene.closest_hit(&ray.ray(), &mut Traversal::new(())).t;
                         Ray32 { t_far, ..ray }

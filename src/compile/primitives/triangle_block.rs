@@ -58,8 +58,7 @@ impl TriangleBlock {
 
     #[inline]
     pub(super) fn lanes(&self) -> TriangleLanes<f32x8> {
-        let rows = |rows: &[[f32; 8]; 3]| vector3(rows[0].into(), rows[1].into(), rows[2].into());
-        TriangleLanes { v0: rows(&self.v0), v1: rows(&self.v1), v2: rows(&self.v2), edges: self.edges.into() }
+        Self::eights([self, self])
     }
 
     /// Blocks, each in eight lanes: as many as `R` has eights.
