@@ -17,6 +17,14 @@ pub struct Node {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Child(u32);
 
+/// One of the two planes of a slab: where its row of bounds begins, in pairs of numbers.
+#[derive(Clone, Copy, Debug)]
+#[repr(u8)]
+pub(super) enum Side {
+    Lower = 0,
+    Upper = 4,
+}
+
 /// What a [`Child`] means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -156,6 +164,16 @@ impl Node {
     pub(super) fn slabs(&self, axis: usize, negative: bool) -> (&[f32; 8], &[f32; 8]) {
         let sides = &self.bounds[axis];
         (&sides[usize::from(negative)], &sides[usize::from(!negative)])
+    }
+
+    /// The bounds along an axis on one side.
+    #[inline(always)]
+    pub(super) fn plane(&self, axis: usize, side: Side) -> [f32; 8] {
+        let (pairs, _) = self.bounds[axis].as_flattened().as_chunks::<2>();
+        let mut plane = [0.0; 8];
+        let first = side as usize;
+        plane.copy_from_slice(pairs[first..first + 4].as_flattened());
+        plane
     }
 
     /// What is behind the boxes, as words.

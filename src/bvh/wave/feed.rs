@@ -4,11 +4,12 @@ use super::slot::Slot;
 use crate::bvh::{
     Bvh, Leaves, Node, Stream, Tally, Way,
     cost::Cost,
+    node::Side,
     run::{PACKETS, RUN, Runs},
     stream::Ahead,
 };
 use crate::geometry::{Hit, RayLanes, Rayx8};
-use crate::simd::{Eights, LANES, Real, Vec3x8, f32x8, transpose, u32x8, vector3};
+use crate::simd::{Eights, LANES, Mask, Real, Vec3x8, f32x8, transpose, u32x8, vector3};
 
 /// Ulps of |rdir|·(|org| + |bound|) by which slabs are widened: 3 for the fused form and its constant, 12
 /// for the widening and the rounding of the kernels' own test.
@@ -18,55 +19,63 @@ const LEAST: f32 = 1e-43;
 /// Greatest magnitude of a reciprocal direction in box tests.
 const STEEPEST: f32 = 1e18;
 
-/// All that a ray needs on its way: three rows of eight, so that it is copied in three moves.
+/// All that a ray needs on its way: three rows of eight, so that it is copied in few moves.
 ///
 /// ```text
-/// inv x y z     low shift x y z    t_near  t_far
-/// high shift x y z    org x y z    t_near  index
+/// inv x y z     near shift x y z   t_near  t_far
+/// far shift x y z     org x y z    t_near  index
 /// dir x y z     rdir x y z         margin  –
 /// ```
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
-pub(super) struct Ready([[f32; 8]; 3]);
+#[repr(C)]
+pub(super) struct Ready {
+    rows: [[f32; 8]; 3],
+    /// Which plane of a slab is met first, for each axis, and which last.
+    near: [Side; 4],
+    far: [Side; 4],
+}
 
 /// What a box test needs along an axis: a plane at x is met at x·inv + shift.
 pub(super) struct Slab {
     pub(super) inv: f32,
-    /// For lower bounds, which are moved down by the margin.
-    pub(super) low_shift: f32,
-    /// For upper bounds, which are moved up.
-    pub(super) high_shift: f32,
+    /// The plane that is met first, which is moved towards the origin by the margin.
+    pub(super) near: Side,
+    pub(super) near_shift: f32,
+    /// The one that is met last, which is moved away.
+    pub(super) far: Side,
+    pub(super) far_shift: f32,
 }
 
 impl Ready {
-    pub(super) const NOTHING: Self = Self([[0.0; 8]; 3]);
+    pub(super) const NOTHING: Self = Self { rows: [[0.0; 8]; 3], near: [Side::Lower; 4], far: [Side::Upper; 4] };
 
     #[inline]
     pub(super) fn slab(&self, axis: usize) -> Slab {
-        let [first, second, _] = &self.0;
-        Slab { inv: first[axis], low_shift: first[axis + 3], high_shift: second[axis] }
+        let [first, second, _] = &self.rows;
+        let (near, far) = (self.near[axis], self.far[axis]);
+        Slab { inv: first[axis], near, near_shift: first[axis + 3], far, far_shift: second[axis] }
     }
 
     /// Lower end of the ray, not below 0, for box tests.
     #[inline]
     pub(super) fn t_near(&self) -> f32 {
-        self.0[0][6]
+        self.rows[0][6]
     }
 
     #[inline]
     pub(super) fn t_far(&self) -> f32 {
-        self.0[0][7]
+        self.rows[0][7]
     }
 
     #[inline]
     pub(super) fn index(&self) -> usize {
-        self.0[1][7].to_bits() as usize
+        self.rows[1][7].to_bits() as usize
     }
 
     /// The rays themselves, each in eight lanes, for the leaves: as many as `R` has eights.
     #[inline(always)]
     pub(super) fn lanes<R: Eights>(rays: [&Self; 2]) -> RayLanes<R> {
-        let splat = |row: usize, at: usize| R::of_eights(|i| f32x8::splat(rays[i].0[row][at]));
+        let splat = |row: usize, at: usize| R::of_eights(|i| f32x8::splat(rays[i].rows[row][at]));
         let vector = |row: usize, at: usize| vector3(splat(row, at), splat(row, at + 1), splat(row, at + 2));
         RayLanes {
             org: vector(1, 3),
@@ -93,7 +102,7 @@ impl Ready {
             // A slab that is met too early because its reciprocal was cut off stays open until then.
             let steep = f32x8::splat(STEEPEST).lt(rdir.abs());
             let open = f32x8::select(steep, last, f32x8::splat(LEAST));
-            let room = room + f32x8::select(rdir.lt(f32x8::zero()), -open, open);
+            let room = room.abs() + open;
             // Nothing is moved where there is all the room: a difference of infinities would be nowhere.
             let shift = -(org * inv).only(room.abs().lt(f32x8::splat(f32::INFINITY)));
             (shift - room, shift + room)
@@ -106,8 +115,15 @@ impl Ready {
             transpose([x.1, y.1, z.1, org.x, org.y, org.z, *t_near, f32x8::from_bits(index)]),
             transpose([dir.x, dir.y, dir.z, rdir.x, rdir.y, rdir.z, *margin, f32x8::zero()]),
         ];
+        let negative = |inv: f32x8| inv.lt(f32x8::zero()).to_bitmask();
+        let inv_bits = [negative(inv.x), negative(inv.y), negative(inv.z)];
         for (i, ready) in ready.iter_mut().enumerate() {
-            *ready = Self([rows[0][i].to_array(), rows[1][i].to_array(), rows[2][i].to_array()]);
+            let rows = [rows[0][i].to_array(), rows[1][i].to_array(), rows[2][i].to_array()];
+            let side = |side: [Side; 2]| {
+                let of = |axis: usize| side[usize::from(inv_bits[axis] >> i & 1 != 0)];
+                [of(0), of(1), of(2), Side::Lower]
+            };
+            *ready = Self { rows, near: side([Side::Lower, Side::Upper]), far: side([Side::Upper, Side::Lower]) };
         }
     }
 }

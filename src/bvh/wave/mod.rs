@@ -11,13 +11,13 @@ mod feed;
 mod slot;
 
 use super::{
-    Bvh, Child, Leaves, Stream, Tally,
+    Bvh, Child, Leaves, Node, Stream, Tally,
     cost::Cost,
     run::{RUN, Runs},
 };
 use crate::simd::ONE_REGISTER;
 use feed::Feed;
-use slot::Slot;
+use slot::{Met, Slot};
 
 /// Rays in turn: with fewer, passes are short, and the end of each is a branch that is guessed wrong; more leave the
 /// first-level cache.
@@ -156,6 +156,35 @@ impl Bvh {
         }
     }
 
+    #[inline(always)]
+    fn meet_next(
+        &self,
+        slots: &[Slot; SLOTS],
+        each: &mut impl Iterator<Item = usize>,
+    ) -> Option<(usize, &Node, Met)> {
+        let which = each.next()?;
+        let node = &self.nodes[slots[which].child.index()];
+        Some((which, node, slots[which].meet(node)))
+    }
+
+    #[inline(always)]
+    fn step<const ANY: bool, const ASK: bool, L: Leaves, T: Tally>(
+        &self,
+        leaves: &L,
+        slots: &mut [Slot; SLOTS],
+        (which, node, met): (usize, &Node, Met),
+        sets: &mut Sets,
+        tally: &mut T,
+    ) {
+        let slot = &mut slots[which];
+        tally.node(1);
+        slot.enter::<ANY>(node, met);
+        if ASK {
+            self.ask_for(slot.child, leaves);
+        }
+        sets.insert(which, slot.child);
+    }
+
     /// Slots at nodes take a step.
     ///
     /// The boxes of the next slot's node are tested before a slot goes on from its own: what it then needs has been begun
@@ -171,21 +200,13 @@ impl Bvh {
         tally: &mut T,
     ) -> Sets {
         let mut each = each(nodes);
-        let mut meet_next = |slots: &[Slot; SLOTS]| {
-            let which = each.next()?;
-            let node = &self.nodes[slots[which].child.index()];
-            Some((which, node, slots[which].meet(node)))
-        };
-        let mut at = meet_next(slots);
-        while let Some((which, node, met)) = at {
-            at = meet_next(slots);
-            let slot = &mut slots[which];
-            tally.node(1);
-            slot.enter::<ANY>(node, met);
-            if ASK {
-                self.ask_for(slot.child, leaves);
-            }
-            sets.insert(which, slot.child);
+        let mut at = self.meet_next(slots, &mut each);
+        while let Some(one) = at {
+            let other = self.meet_next(slots, &mut each);
+            self.step::<ANY, ASK, L, T>(leaves, slots, one, &mut sets, tally);
+            let Some(other) = other else { break };
+            at = self.meet_next(slots, &mut each);
+            self.step::<ANY, ASK, L, T>(leaves, slots, other, &mut sets, tally);
         }
         sets
     }

@@ -24,7 +24,7 @@ pub(super) struct Slot {
 #[derive(Clone, Copy)]
 pub(super) struct Met {
     low: f32x8,
-    enters: u8,
+    enters: u32,
 }
 
 /// Bits of a key that say which of a node's children it belongs to.
@@ -72,17 +72,15 @@ impl Slot {
         let mut low = f32x8::splat(self.ray.t_near());
         let mut high = f32x8::splat(self.hit.t);
         for axis in 0..3 {
-            // Which of the two planes is met first is a minimum: cheaper than to look for it by the sign.
             let slab = self.ray.slab(axis);
             let inv = f32x8::splat(slab.inv);
-            let [one, other] = node.bounds[axis].map(f32x8::from);
-            let one = one.fused(inv, f32x8::splat(slab.low_shift));
-            let other = other.fused(inv, f32x8::splat(slab.high_shift));
+            let near = f32x8::from(node.plane(axis, slab.near)).fused(inv, f32x8::splat(slab.near_shift));
+            let far = f32x8::from(node.plane(axis, slab.far)).fused(inv, f32x8::splat(slab.far_shift));
             // In this order: NaN, where there is no child, has to stay.
-            low = low.max(one.min(other));
-            high = high.min(one.max(other));
+            low = low.max(near);
+            high = high.min(far);
         }
-        Met { low, enters: low.le(high).to_bitmask() as u8 }
+        Met { low, enters: low.le(high).to_bitmask() }
     }
 
     /// Moves to the nearest of the node's children that the ray enters, or to what waits.
@@ -91,10 +89,10 @@ impl Slot {
         let count = enters.count_ones();
         let top = self.top as usize;
         let children = if ANY {
-            compress(node.words(), enters)
+            compress(node.words(), enters as u8)
         } else {
             let keys = (low.to_bits() & u32x8::splat(!PLACE)) | u32x8::new([0, 1, 2, 3, 4, 5, 6, 7]);
-            let keys = sort_descending(compress(keys, enters), count);
+            let keys = sort_descending(compress(keys, enters as u8), count);
             self.keys[top + 8..top + 16].copy_from_slice(&keys.to_array());
             node.words().shuffle(keys & u32x8::splat(PLACE))
         };
