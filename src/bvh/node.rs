@@ -1,7 +1,7 @@
 //! Eight boxes and what is behind them.
 
 use crate::geometry::Aabb;
-use crate::simd::u32x8;
+use crate::simd::{f32x8, u32x8};
 
 /// Eight children: 256 bytes, four cache lines.
 #[derive(Clone, Copy, Debug)]
@@ -17,7 +17,7 @@ pub struct Node {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Child(u32);
 
-/// One of the two planes of a slab: where its row of bounds begins, in pairs of numbers.
+/// One of a slab's two planes, as what is added to an address: where its bounds begin among an axis's, in eights of bytes.
 #[derive(Clone, Copy, Debug)]
 #[repr(u8)]
 pub(super) enum Side {
@@ -168,12 +168,12 @@ impl Node {
 
     /// The bounds along an axis on one side.
     #[inline(always)]
-    pub(super) fn plane(&self, axis: usize, side: Side) -> [f32; 8] {
+    pub(super) fn plane(&self, axis: usize, side: Side) -> f32x8 {
         let (pairs, _) = self.bounds[axis].as_flattened().as_chunks::<2>();
-        let mut plane = [0.0; 8];
         let first = side as usize;
+        let mut plane = [0.0; 8];
         plane.copy_from_slice(pairs[first..first + 4].as_flattened());
-        plane
+        f32x8::new(plane)
     }
 
     /// What is behind the boxes, as words.

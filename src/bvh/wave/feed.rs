@@ -19,7 +19,7 @@ const LEAST: f32 = 1e-43;
 /// Greatest magnitude of a reciprocal direction in box tests.
 const STEEPEST: f32 = 1e18;
 
-/// All that a ray needs on its way: three rows of eight, so that it is copied in few moves.
+/// All that a ray needs on its way, in rows that are copied whole.
 ///
 /// ```text
 /// inv x y z     near shift x y z   t_near  t_far
@@ -30,7 +30,7 @@ const STEEPEST: f32 = 1e18;
 #[repr(C)]
 pub(super) struct Ready {
     rows: [[f32; 8]; 3],
-    /// Which plane of a slab is met first, for each axis, and which last.
+    /// Which plane is met first along each axis, and which last. Four, as words are copied faster.
     near: [Side; 4],
     far: [Side; 4],
 }
@@ -38,16 +38,17 @@ pub(super) struct Ready {
 /// What a box test needs along an axis: a plane at x is met at x·inv + shift.
 pub(super) struct Slab {
     pub(super) inv: f32,
-    /// The plane that is met first, which is moved towards the origin by the margin.
+    /// The plane that is met first, moved back by the margin.
     pub(super) near: Side,
     pub(super) near_shift: f32,
-    /// The one that is met last, which is moved away.
+    /// The one that is met last, moved on.
     pub(super) far: Side,
     pub(super) far_shift: f32,
 }
 
 impl Ready {
-    pub(super) const NOTHING: Self = Self { rows: [[0.0; 8]; 3], near: [Side::Lower; 4], far: [Side::Upper; 4] };
+    pub(super) const NOTHING: Self =
+        Self { rows: [[0.0; 8]; 3], near: [Side::Lower; 4], far: [Side::Upper; 4] };
 
     #[inline]
     pub(super) fn slab(&self, axis: usize) -> Slab {
@@ -115,15 +116,17 @@ impl Ready {
             transpose([x.1, y.1, z.1, org.x, org.y, org.z, *t_near, f32x8::from_bits(index)]),
             transpose([dir.x, dir.y, dir.z, rdir.x, rdir.y, rdir.z, *margin, f32x8::zero()]),
         ];
-        let negative = |inv: f32x8| inv.lt(f32x8::zero()).to_bitmask();
-        let inv_bits = [negative(inv.x), negative(inv.y), negative(inv.z)];
+        let negative = [inv.x, inv.y, inv.z].map(|inv| inv.lt(f32x8::zero()).to_bitmask());
         for (i, ready) in ready.iter_mut().enumerate() {
-            let rows = [rows[0][i].to_array(), rows[1][i].to_array(), rows[2][i].to_array()];
-            let side = |side: [Side; 2]| {
-                let of = |axis: usize| side[usize::from(inv_bits[axis] >> i & 1 != 0)];
+            let sides = |sides: [Side; 2]| {
+                let of = |axis: usize| sides[usize::from(negative[axis] >> i & 1 != 0)];
                 [of(0), of(1), of(2), Side::Lower]
             };
-            *ready = Self { rows, near: side([Side::Lower, Side::Upper]), far: side([Side::Upper, Side::Lower]) };
+            *ready = Self {
+                rows: [rows[0][i].to_array(), rows[1][i].to_array(), rows[2][i].to_array()],
+                near: sides([Side::Lower, Side::Upper]),
+                far: sides([Side::Upper, Side::Lower]),
+            };
         }
     }
 }

@@ -156,35 +156,6 @@ impl Bvh {
         }
     }
 
-    #[inline(always)]
-    fn meet_next(
-        &self,
-        slots: &[Slot; SLOTS],
-        each: &mut impl Iterator<Item = usize>,
-    ) -> Option<(usize, &Node, Met)> {
-        let which = each.next()?;
-        let node = &self.nodes[slots[which].child.index()];
-        Some((which, node, slots[which].meet(node)))
-    }
-
-    #[inline(always)]
-    fn step<const ANY: bool, const ASK: bool, L: Leaves, T: Tally>(
-        &self,
-        leaves: &L,
-        slots: &mut [Slot; SLOTS],
-        (which, node, met): (usize, &Node, Met),
-        sets: &mut Sets,
-        tally: &mut T,
-    ) {
-        let slot = &mut slots[which];
-        tally.node(1);
-        slot.enter::<ANY>(node, met);
-        if ASK {
-            self.ask_for(slot.child, leaves);
-        }
-        sets.insert(which, slot.child);
-    }
-
     /// Slots at nodes take a step.
     ///
     /// The boxes of the next slot's node are tested before a slot goes on from its own: what it then needs has been begun
@@ -200,15 +171,47 @@ impl Bvh {
         tally: &mut T,
     ) -> Sets {
         let mut each = each(nodes);
+        // By twos: what is known of the next slot stays where it is while it becomes this one.
         let mut at = self.meet_next(slots, &mut each);
         while let Some(one) = at {
             let other = self.meet_next(slots, &mut each);
-            self.step::<ANY, ASK, L, T>(leaves, slots, one, &mut sets, tally);
+            self.go_on::<ANY, ASK, L, T>(leaves, slots, one, &mut sets, tally);
             let Some(other) = other else { break };
             at = self.meet_next(slots, &mut each);
-            self.step::<ANY, ASK, L, T>(leaves, slots, other, &mut sets, tally);
+            self.go_on::<ANY, ASK, L, T>(leaves, slots, other, &mut sets, tally);
         }
         sets
+    }
+
+    /// Tests the boxes of the next slot's node.
+    #[inline(always)]
+    fn meet_next(
+        &self,
+        slots: &[Slot; SLOTS],
+        each: &mut impl Iterator<Item = usize>,
+    ) -> Option<(usize, &Node, Met)> {
+        let which = each.next()?;
+        let node = &self.nodes[slots[which].child.index()];
+        Some((which, node, slots[which].meet(node)))
+    }
+
+    /// A slot goes on from its node.
+    #[inline(always)]
+    fn go_on<const ANY: bool, const ASK: bool, L: Leaves, T: Tally>(
+        &self,
+        leaves: &L,
+        slots: &mut [Slot; SLOTS],
+        (which, node, met): (usize, &Node, Met),
+        sets: &mut Sets,
+        tally: &mut T,
+    ) {
+        let slot = &mut slots[which];
+        tally.node(1);
+        slot.enter::<ANY>(node, met);
+        if ASK {
+            self.ask_for(slot.child, leaves);
+        }
+        sets.insert(which, slot.child);
     }
 
     /// Slots at leaves test a block, two at once where a register holds both. Returns how many blocks' time that took, too.

@@ -5,7 +5,7 @@ use crate::bvh::{Child, Leaves, Node, STACK};
 use crate::geometry::{Hit, PrimitiveId};
 use crate::simd::{Bits, Mask, Real, compress, f32x8, f32x16, sort_descending, u32x8};
 
-/// The ray, what it has found, and what waits for it.
+/// The ray, what it has found, and what waits for it. All but what waits fills two cache lines.
 #[repr(C, align(64))]
 pub(super) struct Slot {
     ray: Ready,
@@ -72,10 +72,11 @@ impl Slot {
         let mut low = f32x8::splat(self.ray.t_near());
         let mut high = f32x8::splat(self.hit.t);
         for axis in 0..3 {
+            // Both planes and their order would take as many operations, but in units that have no time to spare.
             let slab = self.ray.slab(axis);
             let inv = f32x8::splat(slab.inv);
-            let near = f32x8::from(node.plane(axis, slab.near)).fused(inv, f32x8::splat(slab.near_shift));
-            let far = f32x8::from(node.plane(axis, slab.far)).fused(inv, f32x8::splat(slab.far_shift));
+            let near = node.plane(axis, slab.near).fused(inv, f32x8::splat(slab.near_shift));
+            let far = node.plane(axis, slab.far).fused(inv, f32x8::splat(slab.far_shift));
             // In this order: NaN, where there is no child, has to stay.
             low = low.max(near);
             high = high.min(far);
