@@ -117,22 +117,19 @@ impl Child {
 }
 
 impl Node {
-    /// Where an absent child is: nowhere for those who look for the near plane of an axis by the sign of the ray, and,
-    /// because of NaN along the last axis, for those who take the lesser of two planes.
-    pub(super) const NOWHERE: [[f32; 2]; 3] =
-        [[f32::INFINITY, f32::NEG_INFINITY], [f32::INFINITY, f32::NEG_INFINITY], [f32::NAN, f32::NAN]];
+    /// Where an absent child is along each axis: the planes are the wrong way round.
+    pub(super) const NOWHERE: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
 
     /// No children.
     pub const EMPTY: Self = {
-        let [[x0, x1], [y0, y1], [z0, z1]] = Self::NOWHERE;
-        let bounds = [[[x0; 8], [x1; 8]], [[y0; 8], [y1; 8]], [[z0; 8], [z1; 8]]];
-        Self { bounds, children: [Child::ABSENT; 8] }
+        let [lower, upper] = Self::NOWHERE;
+        Self { bounds: [[[lower; 8], [upper; 8]]; 3], children: [Child::ABSENT; 8] }
     };
 
     /// Takes the child out of its place.
     pub fn clear(&mut self, place: usize) {
-        for (bounds, nowhere) in self.bounds.iter_mut().zip(Self::NOWHERE) {
-            (bounds[0][place], bounds[1][place]) = (nowhere[0], nowhere[1]);
+        for [lower, upper] in &mut self.bounds {
+            [lower[place], upper[place]] = Self::NOWHERE;
         }
         self.children[place] = Child::ABSENT;
     }

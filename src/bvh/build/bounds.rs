@@ -2,7 +2,6 @@
 
 use glam::{Vec3A, Vec3Swizzles, Vec4};
 
-use crate::bvh::Node;
 use crate::geometry::Aabb;
 use crate::simd::{Mask, Real, f32x8, transpose, u32x8};
 
@@ -11,13 +10,8 @@ use crate::simd::{Mask, Real, f32x8, transpose, u32x8};
 pub(super) struct Bounds(pub(super) f32x8);
 
 impl Bounds {
+    /// That of an absent child, too.
     pub(super) const EMPTY: Self = Self(f32x8::new([f32::NEG_INFINITY; 8]));
-
-    /// The box of an absent child.
-    pub(super) const NOWHERE: Self = {
-        let [[x0, x1], [y0, y1], [z0, z1]] = Node::NOWHERE;
-        Self(f32x8::new([-x0, -y0, -z0, 0.0, x1, y1, z1, 0.0]))
-    };
 
     /// What a row of a reference or a node has in its lanes, but for what is in those to spare: as floats, numbers may
     /// be so small that arithmetic gets slow. By lanes: taken apart, rows would be read and moved in parts.
@@ -83,7 +77,7 @@ impl Bounds {
         dx * dy + dy * dz + dz * dx
     }
 
-    /// Eight boxes as a [`Node`] has them.
+    /// Eight boxes as a [`Node`](crate::bvh::Node) has them.
     #[inline]
     pub(super) fn columns(boxes: [Self; 8]) -> [[[f32; 8]; 2]; 3] {
         let [x0, y0, z0, _, x1, y1, z1, _] = transpose(boxes.map(|bounds| bounds.0));
@@ -111,7 +105,7 @@ impl From<Aabb> for Bounds {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bvh::Child;
+    use crate::bvh::{Child, Node};
     use glam::vec3;
 
     #[test]
@@ -131,7 +125,7 @@ mod tests {
     #[test]
     fn columns_are_what_a_node_has_that_is_filled_box_by_box() {
         let mut node = Node::EMPTY;
-        let mut boxes = [Bounds::NOWHERE; 8];
+        let mut boxes = [Bounds::EMPTY; 8];
         for (place, bounds) in boxes.iter_mut().enumerate().take(5) {
             let min = vec3(0.0, -0.0, 0.5) * place as f32;
             let aabb = Aabb { min, max: min + vec3(0.0, 1.0, 2.0) };

@@ -127,7 +127,7 @@ impl Target for Filling<'_> {
     }
 
     fn fill(&mut self, node: u32, forest: &Forest, children: [Child; 8]) {
-        let mut boxes = [Bounds::NOWHERE; 8];
+        let mut boxes = [Bounds::EMPTY; 8];
         for (place, run) in forest.places() {
             boxes[place] = self.tree.node(run.root).bounds;
         }

@@ -77,7 +77,7 @@ impl Slot {
             let inv = f32x8::splat(slab.inv);
             let near = node.plane(axis, slab.near).fused(inv, f32x8::splat(slab.near_shift));
             let far = node.plane(axis, slab.far).fused(inv, f32x8::splat(slab.far_shift));
-            // In this order: NaN, where there is no child, has to stay.
+            // In this order: NaN, where there is no child and the margin leaves all the room, has to stay.
             low = low.max(near);
             high = high.min(far);
         }
