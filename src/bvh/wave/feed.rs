@@ -30,7 +30,7 @@ const STEEPEST: f32 = 1e18;
 #[repr(C)]
 pub(super) struct Ready {
     rows: [[f32; 8]; 3],
-    /// Which plane is met first along each axis, and which last. Four, as words are copied faster.
+    /// Which plane is met first along each axis, and which last. The fourth fills a word.
     near: [Side; 4],
     far: [Side; 4],
 }
