@@ -118,7 +118,7 @@ impl Child {
 
 impl Node {
     /// Where an absent child is along each axis: the planes are the wrong way round.
-    pub(super) const NOWHERE: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
+    const NOWHERE: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
 
     /// No children.
     pub const EMPTY: Self = {

@@ -30,7 +30,7 @@ const STEEPEST: f32 = 1e18;
 #[repr(C)]
 pub(super) struct Ready {
     rows: [[f32; 8]; 3],
-    /// Which plane is met first along each axis, and which last. The fourth fills a word.
+    /// Which plane is met first along each axis, and which last: no step has to work out either. The fourth fills a word.
     near: [Side; 4],
     far: [Side; 4],
 }
@@ -99,13 +99,12 @@ impl Ready {
         let last = leaves(rdir.y, org.y, reach.y).min(leaves(rdir.z, org.z, reach.z).min(last));
         let last = last + last;
         let axis = |rdir: f32x8, inv: f32x8, org: f32x8, reach: f32x8| {
-            let room = f32x8::splat(MARGIN) * inv * (org.abs() + reach);
             // A slab that is met too early because its reciprocal was cut off stays open until then.
             let steep = f32x8::splat(STEEPEST).lt(rdir.abs());
             let open = f32x8::select(steep, last, f32x8::splat(LEAST));
-            let room = room.abs() + open;
+            let room = f32x8::splat(MARGIN) * inv.abs() * (org.abs() + reach) + open;
             // Nothing is moved where there is all the room: a difference of infinities would be nowhere.
-            let shift = -(org * inv).only(room.abs().lt(f32x8::splat(f32::INFINITY)));
+            let shift = -(org * inv).only(room.lt(f32x8::splat(f32::INFINITY)));
             (shift - room, shift + room)
         };
         let x = axis(rdir.x, inv.x, org.x, reach.x);

@@ -175,10 +175,10 @@ impl Bvh {
         let mut at = self.meet_next(slots, &mut each);
         while let Some(one) = at {
             let other = self.meet_next(slots, &mut each);
-            self.go_on::<ANY, ASK, L, T>(leaves, slots, one, &mut sets, tally);
+            self.step::<ANY, ASK, L, T>(leaves, slots, one, &mut sets, tally);
             let Some(other) = other else { break };
             at = self.meet_next(slots, &mut each);
-            self.go_on::<ANY, ASK, L, T>(leaves, slots, other, &mut sets, tally);
+            self.step::<ANY, ASK, L, T>(leaves, slots, other, &mut sets, tally);
         }
         sets
     }
@@ -195,9 +195,9 @@ impl Bvh {
         Some((which, node, slots[which].meet(node)))
     }
 
-    /// A slot goes on from its node.
+    /// A slot takes the step whose boxes are tested.
     #[inline(always)]
-    fn go_on<const ANY: bool, const ASK: bool, L: Leaves, T: Tally>(
+    fn step<const ANY: bool, const ASK: bool, L: Leaves, T: Tally>(
         &self,
         leaves: &L,
         slots: &mut [Slot; SLOTS],

@@ -72,7 +72,7 @@ impl Slot {
         let mut low = f32x8::splat(self.ray.t_near());
         let mut high = f32x8::splat(self.hit.t);
         for axis in 0..3 {
-            // Both planes and their order would take as many operations, but in units that have no time to spare.
+            // The lesser and the greater of both products need no sign, but minima and maxima are for the busiest units.
             let slab = self.ray.slab(axis);
             let inv = f32x8::splat(slab.inv);
             let near = node.plane(axis, slab.near).fused(inv, f32x8::splat(slab.near_shift));
