@@ -47,8 +47,10 @@ impl Bvh {
                 }
                 Kind::Leaf { first, count } => {
                     tally.leaf(count, 1);
-                    let mut nobody = Hit::MISS;
-                    leaves.intersect_blocks::<ANY, f32x8>([(first, count); 2], || lanes, [hit, &mut nobody]);
+                    let limited = RayLanes { t_far: f32x8::splat(hit.t), ..lanes };
+                    if !leaves.intersect_blocks::<ANY, 1, f32x8>([first], limited, [&mut *hit]) {
+                        leaves.intersect_alone::<ANY>((first, count), &limited, hit);
+                    }
                     if ANY && hit.t == f32::NEG_INFINITY {
                         return;
                     }

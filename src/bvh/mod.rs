@@ -37,7 +37,7 @@ use std::hint::select_unpredictable;
 use glam::Vec3;
 
 use crate::geometry::{Hit, Pencils, PrimitiveId, Ray, RayLanes, Rayx8, Rayx16};
-use crate::simd::{Bits, Eights, LANES, Mask8, Mask16, Real, f32x8, f32x16, prefetch, transpose, u32x8};
+use crate::simd::{Bits, Groups, LANES, Mask8, Mask16, Real, f32x8, f32x16, prefetch, transpose, u32x8};
 
 /// Slots in a block. A leaf never crosses from one block into the next.
 pub const BLOCK: usize = 8;
@@ -146,17 +146,19 @@ pub trait Leaves {
     /// Where the data of a slot's block begin, to be asked for ahead of time.
     fn address(&self, slot: u32) -> *const u8;
 
-    /// How many blocks' time [`intersect_blocks`](Leaves::intersect_blocks) takes for a leaf.
-    fn blocks(&self, first: u32, count: u32) -> u32;
-
-    /// A ray in each eight lanes, each against its own leaf's (first slot, count): the lanes are primitives. More than
-    /// what was asked for may be tested. There are as many rays as `R` has eights; leaves and hits beyond are not looked at.
-    fn intersect_blocks<const ANY: bool, R: Eights>(
+    /// Rays that each have a group of lanes, and there the primitives of a leaf that begins at a slot: where a group has
+    /// four lanes, a leaf of up to four. More than the leaf may be tested. The rays' `t_far` are those of `hits`. False, and nothing
+    /// has been done, if a leaf is not of triangles or rounding might decide: then each is to be
+    /// [asked for](Self::intersect_alone).
+    fn intersect_blocks<const ANY: bool, const N: usize, R: Groups<N>>(
         &self,
-        leaves: [(u32, u32); 2],
-        rays: impl Fn() -> RayLanes<R>,
-        hits: [&mut Hit; 2],
-    );
+        slots: [u32; N],
+        rays: RayLanes<R>,
+        hits: [&mut Hit; N],
+    ) -> bool;
+
+    /// One ray, in all lanes, against a leaf's (first slot, count). Returns how many blocks' time that took.
+    fn intersect_alone<const ANY: bool>(&self, leaf: (u32, u32), ray: &Rayx8, hit: &mut Hit) -> u32;
 
     /// One ray, from the scalar kernels.
     fn intersect_single<const ANY: bool>(&self, first: u32, count: u32, ray: &Ray, hit: &mut Hit);

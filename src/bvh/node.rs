@@ -46,7 +46,11 @@ impl Child {
     pub const ABSENT: Self = Self(u32::MAX);
     /// Slots and inner nodes are fewer than this.
     pub const LIMIT: u32 = (1 << 28) - 1;
-    const LEAF: u32 = 1 << 31;
+    /// Where the [tag](Self::tag) is, what is behind a child, and where how many there are less one, of four.
+    const TAG: u32 = 30;
+    const COUNT: u32 = 28;
+    const SMALL: u32 = 1;
+    const LARGE: u32 = 2;
 
     /// The node at `index`, below [`Child::LIMIT`].
     #[inline]
@@ -59,19 +63,26 @@ impl Child {
     #[inline]
     pub fn leaf(first: u32, count: u32) -> Self {
         debug_assert!(first < Self::LIMIT && (1..=8).contains(&count));
-        Self(Self::LEAF | (count - 1) << 28 | first)
+        let tag = if count <= 4 { Self::SMALL } else { Self::LARGE };
+        Self(tag << Self::TAG | ((count - 1) % 4) << Self::COUNT | first)
     }
 
     /// Is it a leaf? False for an absent child, too.
     #[inline]
     pub fn is_leaf(self) -> bool {
-        self.0 & Self::LEAF != 0 && self != Self::ABSENT
+        self.is_leaf_or_absent() && self != Self::ABSENT
     }
 
     /// Is it anything but an inner node?
     #[inline]
     pub(super) fn is_leaf_or_absent(self) -> bool {
-        self.0 & Self::LEAF != 0
+        self.0 >= Self::SMALL << Self::TAG
+    }
+
+    /// 0 for an inner node, 1 for a leaf of up to four slots, 2 for a larger one, and 3 for an absent child.
+    #[inline]
+    pub(super) fn tag(self) -> u32 {
+        self.0 >> Self::TAG
     }
 
     /// The index of an inner node.
@@ -83,13 +94,14 @@ impl Child {
     /// The first slot of a leaf.
     #[inline]
     pub(super) fn slot(self) -> u32 {
-        self.0 & (Self::LEAF - 1) >> 3
+        self.0 & Self::LIMIT
     }
 
     /// The first slot of a leaf and how many there are.
     #[inline]
     pub(super) fn slots(self) -> (u32, u32) {
-        (self.slot(), (self.0 >> 28 & 7) + 1)
+        let count = (self.0 >> Self::COUNT & 3) + 1;
+        (self.slot(), if self.tag() == Self::SMALL { count } else { count + 4 })
     }
 
     #[inline]
@@ -107,7 +119,7 @@ impl Child {
     pub fn kind(self) -> Kind {
         if self == Self::ABSENT {
             Kind::Absent
-        } else if self.0 & Self::LEAF == 0 {
+        } else if !self.is_leaf_or_absent() {
             Kind::Inner(self.0)
         } else {
             let (first, count) = self.slots();

@@ -15,7 +15,7 @@ use crate::geometry::{
     AspectColumns, Canonical, Hit, Pencils, PrimitiveId, Ray, RayLanes, Rayx8, Rayx16, Sphere, SphereLanes,
     Triangle,
 };
-use crate::simd::{Bits, Eights, Mask, Mask8, Mask16, Real, Vector3, f32x8, f32x16};
+use crate::simd::{Bits, Groups, Mask, Mask8, Mask16, Real, Vector3, f32x8, f32x16};
 
 /// Classes of references, in the order of their blocks.
 pub(super) const TRIANGLE: u8 = 0;
@@ -293,19 +293,18 @@ impl Leaves for Primitives {
         (tests, found)
     }
 
-    #[inline]
-    fn blocks(&self, first: u32, count: u32) -> u32 {
-        if (first as usize) < self.triangles.len() * BLOCK { 1 } else { count }
+    #[inline(always)]
+    fn intersect_blocks<const ANY: bool, const N: usize, R: Groups<N>>(
+        &self,
+        slots: [u32; N],
+        rays: RayLanes<R>,
+        hits: [&mut Hit; N],
+    ) -> bool {
+        self.rays_against_blocks::<ANY, N, R>(slots, rays, hits)
     }
 
-    #[inline(always)]
-    fn intersect_blocks<const ANY: bool, R: Eights>(
-        &self,
-        leaves: [(u32, u32); 2],
-        rays: impl Fn() -> RayLanes<R>,
-        hits: [&mut Hit; 2],
-    ) {
-        self.rays_against_blocks::<ANY, R>(leaves, rays, hits);
+    fn intersect_alone<const ANY: bool>(&self, leaf: (u32, u32), ray: &Rayx8, hit: &mut Hit) -> u32 {
+        self.ray_against_leaf::<ANY>(leaf, ray, hit)
     }
 
     #[inline]

@@ -160,6 +160,12 @@ impl Hit {
         bytemuck::must_cast(row)
     }
 
+    /// (t, u, v, the primitive's number as bits).
+    #[inline]
+    pub fn to_row(self) -> [f32; 4] {
+        bytemuck::must_cast(self)
+    }
+
     /// The order that makes the answer unique: nearest t, then lowest id.
     #[inline]
     pub fn closer_than(&self, other: &Self) -> bool {

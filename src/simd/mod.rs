@@ -11,8 +11,10 @@
 mod compress;
 pub mod cpu;
 mod float;
+mod groups;
 mod integer;
 mod mask;
+mod opaque;
 mod prefetch;
 mod real;
 mod sixteen;
@@ -23,6 +25,7 @@ mod vector;
 
 pub use compress::compress;
 pub use float::{f32x8, transpose};
+pub use groups::Groups;
 pub use integer::u32x8;
 pub use mask::{Mask8, Mask16};
 pub use prefetch::prefetch;

@@ -9,7 +9,7 @@ use crate::bvh::{
     stream::Ahead,
 };
 use crate::geometry::{Hit, RayLanes, Rayx8};
-use crate::simd::{Eights, LANES, Mask, Real, Vec3x8, f32x8, transpose, u32x8, vector3};
+use crate::simd::{Groups, LANES, Mask, Real, Vec3x8, f32x8, transpose, u32x8, vector3};
 
 /// Ulps of |rdir|·(|org| + |bound|) by which slabs are widened: 3 for the fused form and its constant, 12
 /// for the widening and the rounding of the kernels' own test.
@@ -23,8 +23,8 @@ const STEEPEST: f32 = 1e18;
 ///
 /// ```text
 /// inv x y z     near shift x y z   t_near  t_far
-/// far shift x y z     org x y z    t_near  index
-/// dir x y z     rdir x y z         margin  –
+/// far shift x y z   index          org x y z    t_near
+/// dir x y z   margin               rdir x y z   –
 /// ```
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
@@ -70,21 +70,29 @@ impl Ready {
 
     #[inline]
     pub(super) fn index(&self) -> usize {
-        self.rows[1][7].to_bits() as usize
+        self.rows[1][3].to_bits() as usize
     }
 
-    /// The rays themselves, each in eight lanes, for the leaves: as many as `R` has eights.
+    /// The rays themselves, each in a group of lanes, for the leaves, up to where each ends by now.
     #[inline(always)]
-    pub(super) fn lanes<R: Eights>(rays: [&Self; 2]) -> RayLanes<R> {
-        let splat = |row: usize, at: usize| R::of_eights(|i| f32x8::splat(rays[i].rows[row][at]));
-        let vector = |row: usize, at: usize| vector3(splat(row, at), splat(row, at + 1), splat(row, at + 2));
+    pub(super) fn lanes<const N: usize, R: Groups<N>>(rays: [&Self; N], ends: [f32; N]) -> RayLanes<R> {
+        let splats = |row: usize, half: usize| {
+            let mut numbers = [[0.0; 4]; N];
+            for (numbers, ray) in numbers.iter_mut().zip(rays) {
+                numbers.copy_from_slice(&ray.rows[row][half * 4..half * 4 + 4]);
+            }
+            R::splats(numbers)
+        };
+        let [org_x, org_y, org_z, t_near] = splats(1, 1);
+        let [dir_x, dir_y, dir_z, margin] = splats(2, 0);
+        let [rdir_x, rdir_y, rdir_z, _] = splats(2, 1);
         RayLanes {
-            org: vector(1, 3),
-            dir: vector(2, 0),
-            rdir: vector(2, 3),
-            t_near: splat(1, 6),
-            t_far: splat(0, 7),
-            margin: splat(2, 6),
+            org: vector3(org_x, org_y, org_z),
+            dir: vector3(dir_x, dir_y, dir_z),
+            rdir: vector3(rdir_x, rdir_y, rdir_z),
+            t_near,
+            t_far: R::splat_each(ends),
+            margin,
         }
     }
 
@@ -112,8 +120,8 @@ impl Ready {
         let z = axis(rdir.z, inv.z, org.z, reach.z);
         let rows = [
             transpose([inv.x, inv.y, inv.z, x.0, y.0, z.0, t_near.max(f32x8::zero()), *t_far]),
-            transpose([x.1, y.1, z.1, org.x, org.y, org.z, *t_near, f32x8::from_bits(index)]),
-            transpose([dir.x, dir.y, dir.z, rdir.x, rdir.y, rdir.z, *margin, f32x8::zero()]),
+            transpose([x.1, y.1, z.1, f32x8::from_bits(index), org.x, org.y, org.z, *t_near]),
+            transpose([dir.x, dir.y, dir.z, *margin, rdir.x, rdir.y, rdir.z, f32x8::zero()]),
         ];
         let negative = [inv.x, inv.y, inv.z].map(|inv| inv.lt(f32x8::zero()).to_bitmask());
         for (i, ready) in ready.iter_mut().enumerate() {

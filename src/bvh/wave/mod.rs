@@ -9,22 +9,22 @@
 
 mod feed;
 mod slot;
+mod tags;
+
+use std::hint::select_unpredictable;
 
 use super::{
     Bvh, Child, Leaves, Node, Stream, Tally,
     cost::Cost,
     run::{RUN, Runs},
 };
-use crate::simd::ONE_REGISTER;
+use crate::simd::{Groups, ONE_REGISTER, f32x8, f32x16};
 use feed::Feed;
 use slot::{Met, Slot};
+use tags::{SLOTS, Slots, Tags, each, only, take};
 
-/// Rays in turn: with fewer, passes are short, and the end of each is a branch that is guessed wrong; more leave the
-/// first-level cache.
-const SLOTS: usize = 32;
-/// All slots.
-const ALL: u32 = u32::MAX;
-/// Slots that wait at leaves, and at their ends, before these have a pass, for the same reason.
+/// Slots that wait at leaves, and at their ends, before these have a pass: with fewer, passes are short, and the end of each is a branch that
+/// is guessed wrong.
 const AT_LEAVES: u32 = 16;
 const AT_ENDS: u32 = 6;
 
@@ -39,47 +39,6 @@ impl Default for Wave {
     fn default() -> Self {
         Self { slots: (0..SLOTS).map(|_| Slot::new()).collect(), feed: Feed::default() }
     }
-}
-
-/// Sets of slots: a slot is at a leaf, at its end, or, if it is neither, at a node.
-///
-/// Which set comes next is a shift and an or, in registers: a list in memory would make each slot's turn
-/// wait for the last one's, and a branch would be wrong half of the time.
-#[derive(Clone, Copy, Default)]
-struct Sets {
-    leaves: u32,
-    done: u32,
-}
-
-impl Sets {
-    #[inline]
-    fn insert(&mut self, slot: usize, child: Child) {
-        self.leaves |= u32::from(child.is_leaf_or_absent()) << slot;
-        self.done |= u32::from(child == Child::ABSENT) << slot;
-    }
-
-    /// Those of some slots that are at nodes.
-    fn nodes(&self, among: u32) -> u32 {
-        among & !self.leaves
-    }
-
-    /// Those that are at leaves.
-    fn at_leaves(&self) -> u32 {
-        self.leaves & !self.done
-    }
-}
-
-/// The slots of a set, lowest first.
-#[inline]
-fn each(set: u32) -> impl Iterator<Item = usize> {
-    let mut left = set;
-    std::iter::from_fn(move || {
-        let slot = left.trailing_zeros() as usize;
-        (left != 0).then(|| {
-            left &= left - 1;
-            slot % SLOTS
-        })
-    })
 }
 
 impl Bvh {
@@ -112,27 +71,25 @@ impl Bvh {
         let Wave { slots, feed } = wave;
         let Some(slots) = slots.first_chunk_mut() else { return };
         feed.begin();
-        let (mut nodes, mut sets) = (0, Sets { leaves: ALL, done: ALL });
+        let (mut nodes, mut at): (Slots, _) = (0, Tags::DONE);
         let mut fresh = true;
         let (mut steps, mut blocks, mut ended) = (0, 0, 0);
-        while nodes | sets.leaves != 0 {
+        while nodes != 0 || !at.is_empty() {
             steps += nodes.count_ones();
-            sets = self.pass_nodes::<ANY, ASK, L, T>(leaves, slots, nodes, sets, tally);
-            nodes = sets.nodes(nodes);
-            let at_leaves = sets.at_leaves();
+            at = self.pass_nodes::<ANY, ASK, L, T>(leaves, slots, nodes, at, tally);
+            nodes = at.nodes(nodes);
+            let at_leaves = at.leaves();
             if nodes == 0 || at_leaves.count_ones() >= AT_LEAVES {
-                sets.leaves = sets.done;
-                let (after, tested) =
-                    self.pass_leaves::<ANY, ASK, L, T>(leaves, (slots, at_leaves), sets, runs, tally);
-                sets = after;
+                let (after, tested) = self.pass_leaves::<ANY, ASK, L, T>(leaves, slots, at, runs, tally);
+                at = after;
                 blocks += tested;
-                nodes |= sets.nodes(at_leaves);
+                nodes |= at.nodes(at_leaves);
             }
-            if nodes | sets.at_leaves() != 0 && sets.done.count_ones() < AT_ENDS {
+            let done = at.done();
+            if nodes | at.leaves() != 0 && done.count_ones() < AT_ENDS {
                 continue;
             }
-            let done = std::mem::take(&mut sets.done);
-            sets.leaves &= !done;
+            at.remove(done);
             let mut started = 0;
             ended += if fresh { 0 } else { done.count_ones() };
             for which in each(done) {
@@ -141,14 +98,14 @@ impl Bvh {
                     stream.answer(slot.index(), &slot.hit.settle::<ANY>());
                 }
                 if feed.next::<ANY, L, S, T>(self, leaves, stream, runs, slot, tally) {
-                    started |= 1 << which;
-                    sets.insert(which, slot.child);
+                    started |= only(which);
+                    at.insert(which, slot.child);
                 }
             }
-            nodes |= sets.nodes(started);
+            nodes |= at.nodes(started);
             fresh = false;
             // As it goes on, not when it ends: what is learnt says whether the next run joins it.
-            if ended >= RUN as u32 || nodes | sets.leaves == 0 {
+            if ended >= RUN as u32 || nodes == 0 && at.is_empty() {
                 let cost = Cost::RAY_NODE * steps + Cost::RAY_BLOCK * blocks;
                 feed.tell::<ANY>(runs, ended, cost);
                 (steps, blocks, ended) = (0, 0, 0);
@@ -166,21 +123,21 @@ impl Bvh {
         &self,
         leaves: &L,
         slots: &mut [Slot; SLOTS],
-        nodes: u32,
-        mut sets: Sets,
+        nodes: Slots,
+        mut at: Tags,
         tally: &mut T,
-    ) -> Sets {
+    ) -> Tags {
         let mut each = each(nodes);
         // By twos: what is known of the next slot stays where it is while it becomes this one.
-        let mut at = self.meet_next(slots, &mut each);
-        while let Some(one) = at {
+        let mut next = self.meet_next(slots, &mut each);
+        while let Some(one) = next {
             let other = self.meet_next(slots, &mut each);
-            self.step::<ANY, ASK, L, T>(leaves, slots, one, &mut sets, tally);
+            self.step::<ANY, ASK, L, T>(leaves, slots, one, &mut at, tally);
             let Some(other) = other else { break };
-            at = self.meet_next(slots, &mut each);
-            self.step::<ANY, ASK, L, T>(leaves, slots, other, &mut sets, tally);
+            next = self.meet_next(slots, &mut each);
+            self.step::<ANY, ASK, L, T>(leaves, slots, other, &mut at, tally);
         }
-        sets
+        at
     }
 
     /// Tests the boxes of the next slot's node.
@@ -202,7 +159,7 @@ impl Bvh {
         leaves: &L,
         slots: &mut [Slot; SLOTS],
         (which, node, met): (usize, &Node, Met),
-        sets: &mut Sets,
+        at: &mut Tags,
         tally: &mut T,
     ) {
         let slot = &mut slots[which];
@@ -211,49 +168,79 @@ impl Bvh {
         if ASK {
             self.ask_for(slot.child, leaves);
         }
-        sets.insert(which, slot.child);
+        at.insert(which, slot.child);
     }
 
-    /// Slots at leaves test a block, two at once where a register holds both. Returns how many blocks' time that took, too.
+    /// Slots at leaves test them: where a register holds sixteen lanes, small ones four at once and others two. Returns how many
+    /// blocks' time that took, too.
     #[inline(never)]
     fn pass_leaves<const ANY: bool, const ASK: bool, L: Leaves, T: Tally>(
         &self,
         leaves: &L,
-        (slots, at_leaves): (&mut [Slot; SLOTS], u32),
-        mut sets: Sets,
+        slots: &mut [Slot; SLOTS],
+        mut at: Tags,
         runs: &mut Runs,
         tally: &mut T,
-    ) -> (Sets, u32) {
-        let mut blocks = 0;
+    ) -> (Tags, u32) {
+        let (mut left, mut small, mut blocks) = (at.leaves(), at.small_leaves(), 0);
+        at.remove(left);
+        let mut blocker = Child::ABSENT;
         let mut go_on = |which: usize, slot: &mut Slot| {
             let leaf = slot.child;
-            let (first, count) = leaf.slots();
-            tally.leaf(count, 1);
-            blocks += leaves.blocks(first, count);
+            tally.leaf(leaf.slots().1, 1);
             slot.pop::<ANY>();
-            if ANY && slot.hit.t == f32::NEG_INFINITY {
-                runs.occluder.remember(leaf);
-                slot.child = Child::ABSENT;
+            if ANY {
+                let blocked = slot.hit.t == f32::NEG_INFINITY;
+                blocker = select_unpredictable(blocked, leaf, blocker);
+                slot.child = select_unpredictable(blocked, Child::ABSENT, slot.child);
             }
             if ASK {
                 self.ask_for(slot.child, leaves);
             }
-            sets.insert(which, slot.child);
+            at.insert(which, slot.child);
         };
-        let mut each = each(at_leaves);
-        while let Some(one) = each.next() {
-            if ONE_REGISTER
-                && let Some(other) = each.next()
-                && let Ok([first, second]) = slots.get_disjoint_mut([one, other])
-            {
-                Slot::test_two::<ANY, L>([first, second], leaves);
-                go_on(one, first);
-                go_on(other, second);
-            } else {
-                slots[one].test::<ANY, L>(leaves);
-                go_on(one, &mut slots[one]);
+        if ONE_REGISTER {
+            left &= !small;
+            while small.count_ones() >= 4 {
+                blocks += test_group::<ANY, 4, f32x16, L>(leaves, slots, &mut small, &mut go_on);
+            }
+            left |= small;
+            while left.count_ones() >= 2 {
+                blocks += test_group::<ANY, 2, f32x16, L>(leaves, slots, &mut left, &mut go_on);
             }
         }
-        (sets, blocks)
+        while left != 0 {
+            blocks += test_group::<ANY, 1, f32x8, L>(leaves, slots, &mut left, &mut go_on);
+        }
+        if blocker != Child::ABSENT {
+            runs.occluder.remember(blocker);
+        }
+        (at, blocks)
     }
+}
+
+/// The first slots of a set test their leaves together, and go on. Returns how many blocks' time that took.
+#[inline(always)]
+fn test_group<const ANY: bool, const N: usize, R: Groups<N>, L: Leaves>(
+    leaves: &L,
+    slots: &mut [Slot; SLOTS],
+    set: &mut Slots,
+    mut go_on: impl FnMut(usize, &mut Slot),
+) -> u32 {
+    let mut group = [0; N];
+    for which in &mut group {
+        *which = take(set).unwrap_or_default();
+    }
+    let Ok(mut slots) = slots.get_disjoint_mut(group) else { return 0 };
+    let mut blocks = N as u32;
+    if !Slot::test::<ANY, N, R, L>(&mut slots, leaves) {
+        blocks = 0;
+        for slot in &mut slots {
+            blocks += slot.test_with_care::<ANY, L>(leaves);
+        }
+    }
+    for (which, slot) in group.into_iter().zip(slots) {
+        go_on(which, slot);
+    }
+    blocks
 }

@@ -3,7 +3,7 @@
 use super::feed::Ready;
 use crate::bvh::{Child, Leaves, Node, STACK};
 use crate::geometry::{Hit, PrimitiveId};
-use crate::simd::{Bits, Mask, Real, compress, f32x8, f32x16, sort_descending, u32x8};
+use crate::simd::{Bits, Groups, Mask, Real, compress, f32x8, sort_descending, u32x8};
 
 /// The ray, what it has found, and what waits for it. All but what waits fills two cache lines.
 #[repr(C, align(64))]
@@ -102,21 +102,26 @@ impl Slot {
         self.child = Child::from_word(self.children[self.top as usize]);
     }
 
-    /// Tests two leaves, each by the slot that is at it.
-    // Left to itself the compiler calls it, and a call between two rays costs them their overlap.
+    /// Tests leaves, each by the slot that is at it; false, and nothing has been done, if that takes
+    /// [more](Self::test_with_care).
+    // Left to itself the compiler calls it, and a call between rays costs them their overlap.
     #[inline(always)]
-    pub(super) fn test_two<const ANY: bool, L: Leaves>([one, other]: [&mut Self; 2], leaves: &L) {
-        let at = [one.child.slots(), other.child.slots()];
-        let rays = [&one.ray, &other.ray];
-        let hits = [&mut one.hit, &mut other.hit];
-        leaves.intersect_blocks::<ANY, f32x16>(at, || Ready::lanes(rays), hits);
+    pub(super) fn test<const ANY: bool, const N: usize, R: Groups<N>, L: Leaves>(
+        slots: &mut [&mut Self; N],
+        leaves: &L,
+    ) -> bool {
+        let at = slots.each_ref().map(|slot| slot.child.slot());
+        let ends = slots.each_ref().map(|slot| slot.hit.t);
+        let rays = Ready::lanes::<N, R>(slots.each_ref().map(|slot| &slot.ray), ends);
+        leaves.intersect_blocks::<ANY, N, R>(at, rays, slots.each_mut().map(|slot| &mut slot.hit))
     }
 
-    /// Tests a leaf.
-    #[inline(always)]
-    pub(super) fn test<const ANY: bool, L: Leaves>(&mut self, leaves: &L) {
-        let (at, rays, mut nobody) = ([self.child.slots(); 2], [&self.ray; 2], Hit::MISS);
-        leaves.intersect_blocks::<ANY, f32x8>(at, || Ready::lanes(rays), [&mut self.hit, &mut nobody]);
+    /// Tests a leaf, whatever is in it. Returns how many blocks' time that took.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn test_with_care<const ANY: bool, L: Leaves>(&mut self, leaves: &L) -> u32 {
+        let ray = Ready::lanes::<1, f32x8>([&self.ray], [self.hit.t]);
+        leaves.intersect_alone::<ANY>(self.child.slots(), &ray, &mut self.hit)
     }
 
     /// Moves to the nearest child that waits and is near enough.

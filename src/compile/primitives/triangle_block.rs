@@ -7,7 +7,7 @@ use crate::bvh::{BLOCK, HitLanes, Hitx16};
 use crate::compile::{corners::Corners, surfaces::Surfaces};
 use crate::geometry::{Aspect, AspectColumns, RayLanes, Rayx16, Triangle, TriangleLanes};
 use crate::simd::{
-    Bits, Eights, Mask, Mask8, Mask16, ONE_REGISTER, Real, Vector3, f32x8, f32x16, u32x8, u32x16, vector3,
+    Bits, Groups, Mask, Mask8, Mask16, ONE_REGISTER, Real, Vector3, f32x8, f32x16, u32x8, u32x16, vector3,
 };
 
 /// Memory is asked for the vertices of triangles so many blocks on, and for their numbers twice as far.
@@ -24,7 +24,7 @@ pub(super) struct TriangleBlock {
 }
 
 impl TriangleBlock {
-    const EMPTY: Self = {
+    pub(super) const EMPTY: Self = {
         let nowhere = [[f32::NAN; 8]; 3];
         Self { v0: nowhere, v1: nowhere, v2: nowhere, edges: [f32::NAN; 8] }
     };
@@ -58,21 +58,24 @@ impl TriangleBlock {
 
     #[inline]
     pub(super) fn lanes(&self) -> TriangleLanes<f32x8> {
-        Self::eights([self, self])
+        Self::windows([self], [0])
     }
 
-    /// Blocks, each in eight lanes: as many as `R` has eights.
+    /// Of each block the triangles from a lane on, a group of them.
     #[inline(always)]
-    pub(super) fn eights<R: Eights>(blocks: [&Self; 2]) -> TriangleLanes<R> {
+    pub(super) fn windows<const N: usize, R: Groups<N>>(
+        blocks: [&Self; N],
+        from: [usize; N],
+    ) -> TriangleLanes<R> {
         let rows = |of: fn(&Self) -> &[[f32; 8]; 3]| {
-            let row = |axis: usize| R::of_eights(|i| of(blocks[i])[axis].into());
+            let row = |axis: usize| R::windows(blocks.map(|block| &of(block)[axis]), from);
             vector3(row(0), row(1), row(2))
         };
         TriangleLanes {
             v0: rows(|block| &block.v0),
             v1: rows(|block| &block.v1),
             v2: rows(|block| &block.v2),
-            edges: R::of_eights(|i| blocks[i].edges.into()),
+            edges: R::windows(blocks.map(|block| &block.edges), from),
         }
     }
 
