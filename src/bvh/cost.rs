@@ -33,7 +33,7 @@ impl Cost {
     /// A ray on its own, its nodes, and its blocks.
     pub(super) const RAY: Self = Self(50.0);
     pub(super) const RAY_NODE: Self = Self(28.0);
-    pub(super) const RAY_BLOCK: Self = Self(85.0);
+    pub(super) const RAY_BLOCK: Self = Self(55.0);
 }
 
 impl Mul<u32> for Cost {

@@ -131,6 +131,40 @@ impl Groups<1> for f32x8 {
     }
 }
 
+impl Groups<2> for f32x8 {
+    #[inline(always)]
+    fn splat_each([one, other]: [f32; 2]) -> Self {
+        Self::of_halves([one; 4], [other; 4])
+    }
+    #[inline(always)]
+    fn windows([one, other]: [&[f32; 8]; 2], [i, j]: [usize; 2]) -> Self {
+        Self::of_halves(window(one, i), window(other, j))
+    }
+    #[inline(always)]
+    fn fours(self) -> [[f32; 4]; 2] {
+        [self.half(0), self.half(1)]
+    }
+    #[inline(always)]
+    fn of_fours([one, other]: [[f32; 4]; 2]) -> Self {
+        Self::of_halves(one, other)
+    }
+    #[inline(always)]
+    fn splats(numbers: [[f32; 4]; 2]) -> [Self; 4] {
+        let numbers = opaque(Self::of_fours(numbers));
+        [
+            numbers.in_fours::<0, 0, 0, 0>(),
+            numbers.in_fours::<1, 1, 1, 1>(),
+            numbers.in_fours::<2, 2, 2, 2>(),
+            numbers.in_fours::<3, 3, 3, 3>(),
+        ]
+    }
+    #[inline(always)]
+    fn fold(self, f: impl Fn(Self, Self) -> Self) -> Self {
+        let folded = f(self, self.in_fours::<2, 3, 0, 1>());
+        f(folded, folded.in_fours::<1, 0, 3, 2>())
+    }
+}
+
 impl Groups<2> for f32x16 {
     #[inline(always)]
     fn splat_each(numbers: [f32; 2]) -> Self {
@@ -233,6 +267,7 @@ mod tests {
     #[test]
     fn groups_are_their_lanes() {
         check::<1, f32x8>();
+        check::<2, f32x8>();
         check::<2, f32x16>();
         check::<4, f32x16>();
     }

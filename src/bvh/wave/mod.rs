@@ -171,8 +171,8 @@ impl Bvh {
         at.insert(which, slot.child);
     }
 
-    /// Slots at leaves test them: where a register holds sixteen lanes, small ones four at once and others two. Returns how many
-    /// blocks' time that took, too.
+    /// Slots at leaves test them: where a register holds sixteen lanes, small ones four at once and others two, where it
+    /// holds eight, small ones two at once. Returns how many blocks' time that took, too.
     #[inline(never)]
     fn pass_leaves<const ANY: bool, const ASK: bool, L: Leaves, T: Tally>(
         &self,
@@ -199,8 +199,8 @@ impl Bvh {
             }
             at.insert(which, slot.child);
         };
+        left &= !small;
         if ONE_REGISTER {
-            left &= !small;
             while small.count_ones() >= 4 {
                 blocks += test_group::<ANY, 4, f32x16, L>(leaves, slots, &mut small, &mut go_on);
             }
@@ -208,6 +208,12 @@ impl Bvh {
             while left.count_ones() >= 2 {
                 blocks += test_group::<ANY, 2, f32x16, L>(leaves, slots, &mut left, &mut go_on);
             }
+        } else {
+            // Where memory is asked for, occlusion rays are faster one by one.
+            while !(ANY && ASK) && small.count_ones() >= 2 {
+                blocks += test_group::<ANY, 2, f32x8, L>(leaves, slots, &mut small, &mut go_on);
+            }
+            left |= small;
         }
         while left != 0 {
             blocks += test_group::<ANY, 1, f32x8, L>(leaves, slots, &mut left, &mut go_on);
