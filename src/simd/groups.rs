@@ -1,6 +1,6 @@
 //! Lanes that are shared out in groups: each ray of several has so many of them.
 
-use super::{Mask, Real, f32x8, f32x16, opaque::opaque};
+use super::{Mask, Real, f32x8, f32x16, opaque::opaque, u32x8};
 
 /// `N` groups of lanes, one after the other.
 pub trait Groups<const N: usize>: Real {
@@ -9,6 +9,9 @@ pub trait Groups<const N: usize>: Real {
 
     /// A group's lanes are those of its row from a place on, which leaves enough of them: at most 8 − [`WIDTH`](Self::WIDTH).
     fn windows(rows: [&[f32; 8]; N], from: [usize; N]) -> Self;
+
+    /// The same of words, as they are.
+    fn word_windows(rows: [&[u32; 8]; N], from: [usize; N]) -> Self;
 
     /// The first four lanes of each group.
     fn fours(self) -> [[f32; 4]; N];
@@ -42,11 +45,24 @@ pub trait Groups<const N: usize>: Real {
 
 /// A row's lanes from a place on.
 #[inline(always)]
-fn window(row: &[f32; 8], from: usize) -> [f32; 4] {
+fn window<T: Copy + Default>(row: &[T; 8], from: usize) -> [T; 4] {
     let from = from.min(4);
-    let mut four = [0.0; 4];
+    let mut four = [T::default(); 4];
     four.copy_from_slice(&row[from..from + 4]);
     four
+}
+
+/// The same of words.
+#[inline(always)]
+fn word_window(row: &[u32; 8], from: usize) -> [f32; 4] {
+    let [a, b, c, d] = window(row, from);
+    [f32::from_bits(a), f32::from_bits(b), f32::from_bits(c), f32::from_bits(d)]
+}
+
+/// Words as lanes.
+#[inline(always)]
+fn words(row: &[u32; 8]) -> f32x8 {
+    f32x8::from_bits(u32x8::new(*row))
 }
 
 impl f32x8 {
@@ -112,6 +128,10 @@ impl Groups<1> for f32x8 {
         Self::new(*row)
     }
     #[inline(always)]
+    fn word_windows([row]: [&[u32; 8]; 1], _: [usize; 1]) -> Self {
+        words(row)
+    }
+    #[inline(always)]
     fn fours(self) -> [[f32; 4]; 1] {
         [self.half(0)]
     }
@@ -139,6 +159,10 @@ impl Groups<2> for f32x8 {
     #[inline(always)]
     fn windows([one, other]: [&[f32; 8]; 2], [i, j]: [usize; 2]) -> Self {
         Self::of_halves(window(one, i), window(other, j))
+    }
+    #[inline(always)]
+    fn word_windows([one, other]: [&[u32; 8]; 2], [i, j]: [usize; 2]) -> Self {
+        Self::of_halves(word_window(one, i), word_window(other, j))
     }
     #[inline(always)]
     fn fours(self) -> [[f32; 4]; 2] {
@@ -175,6 +199,10 @@ impl Groups<2> for f32x16 {
         Self::of_halves([f32x8::new(*one), f32x8::new(*other)])
     }
     #[inline(always)]
+    fn word_windows([one, other]: [&[u32; 8]; 2], _: [usize; 2]) -> Self {
+        Self::of_halves([words(one), words(other)])
+    }
+    #[inline(always)]
     fn fours(self) -> [[f32; 4]; 2] {
         [self.quarter(0), self.quarter(2)]
     }
@@ -204,6 +232,10 @@ impl Groups<4> for f32x16 {
     #[inline(always)]
     fn windows([a, b, c, d]: [&[f32; 8]; 4], [i, j, k, l]: [usize; 4]) -> Self {
         Self::of_quarters([window(a, i), window(b, j), window(c, k), window(d, l)])
+    }
+    #[inline(always)]
+    fn word_windows([a, b, c, d]: [&[u32; 8]; 4], [i, j, k, l]: [usize; 4]) -> Self {
+        Self::of_quarters([word_window(a, i), word_window(b, j), word_window(c, k), word_window(d, l)])
     }
     #[inline(always)]
     fn fours(self) -> [[f32; 4]; 4] {
@@ -243,6 +275,8 @@ mod tests {
         for first in 0..=8 - width {
             let from: [usize; N] = std::array::from_fn(|i| (first + i) % (9 - width));
             is(R::windows(rows.each_ref(), from), &|i, k| rows[i][from[i] + k]);
+            let words = rows.map(|row| row.map(f32::to_bits));
+            is(R::word_windows(words.each_ref(), from), &|i, k| rows[i][from[i] + k]);
         }
         let numbers: [[f32; 4]; N] = std::array::from_fn(|i| std::array::from_fn(|k| (10 * i + k) as f32));
         for (k, splat) in R::splats(numbers).into_iter().enumerate() {

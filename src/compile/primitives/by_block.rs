@@ -45,12 +45,12 @@ impl Primitives {
             return true;
         }
         let (ids, _) = self.triangle_ids.as_chunks::<BLOCK>();
-        let mut rows = [&[0.0; LANES]; N];
+        let mut rows = [&[0; BLOCK]; N];
         for i in 0..N {
             let Some(row) = ids.get(slots[i] as usize / BLOCK) else { return false };
-            rows[i] = bytemuck::must_cast_ref(row);
+            rows[i] = row;
         }
-        accept_nearest::<N, R>(hits, (found, t, u, v), rays.t_far, R::windows(rows, from))
+        accept_nearest::<N, R>(hits, (found, t, u, v), rays.t_far, R::word_windows(rows, from))
     }
 
     /// As [`Leaves::intersect_alone`](crate::bvh::Leaves::intersect_alone).
